@@ -122,6 +122,31 @@ def test_an_effect_without_which_held_out_runs_are_predicted_better_is_told_but_
         assert (told in revision.doubts) is not named
 
 
+@pytest.mark.parametrize("hot", [0.0, 25.0])
+def test_where_nothing_explains_the_data_only_effects_that_may_be_named_cost_fits(hot: float) -> None:
+    data = measured(hot=hot, off=0.25)
+    judgement, members, every = diagnosed(data)
+    problem = SelectionProblem(
+        data.residuals, data.predictions, (HOT, COLD), SetPrior((HOT, COLD), 0.5, SETTINGS.size_shares), LogEvidence()
+    )
+    scored = problem.settled(ForwardSelection().search(problem))
+    robust = robustness(problem, scored, certain=False, explained=False)
+    unexplained = replace(judgement, verdict=UNEXPLAINED)
+    assert beside_discrepancies(unexplained, robust, SETTINGS).members == members == ((HOT,) if hot else ())
+    assert [model.name for model in robust.models] == [model.name for model in every.models]
+    fits, of_every = (sum(len(model.fits) for model in each.models) for each in (robust, every))
+    if not hot:
+        assert fits < of_every
+        assert robust.open(SETTINGS.named_probability) == ()
+        return
+    assert fits <= of_every
+    assert robust.open(SETTINGS.named_probability) == (HOT,)
+    for known, model in zip(every.models, robust.models, strict=True):
+        assert model.probability == pytest.approx(known.probability, abs=1e-3)
+        (x, sd), (wanted, _) = model.values["hot"], known.values["hot"]
+        assert abs(x - wanted) < 0.2 * sd
+
+
 def test_an_effect_that_another_strain_law_does_not_need_is_not_named() -> None:
     # The readings have the bump of the effect; one other law heats just there, another one does not.
     data = measured(hot=25.0, off=0.25)

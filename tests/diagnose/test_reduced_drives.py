@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any
+from types import SimpleNamespace
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -18,12 +19,14 @@ from tyrefem.diagnose.criterion import BIC
 from tyrefem.diagnose.evaluations import Evaluations
 from tyrefem.diagnose.exhaustive import Exhaustive
 from tyrefem.diagnose.forward_model import FOLLOWED, NO_ANSWER, NOT_FOLLOWED, DriveResponse, ForwardModel
-from tyrefem.diagnose.multifidelity import Predictions
+from tyrefem.diagnose.multifidelity import DriveCertificate, Predictions
 from tyrefem.diagnose.reduced_forward import Modes, ReducedDrive
 from tyrefem.diagnose.runs import measured_drive
 from tyrefem.diagnose.sensitivities import responses, unknowns_of
 from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
 from tyrefem.diagnose.unknowns import Unknown, with_values
+from tyrefem.diagnose.verdict import NO_GAP, UNEXPLAINED, Judgement, RankedSet
+from tyrefem.diagnose.workflow import Ranking, allowed_error
 from tyrefem.effects import catalogue
 
 Array = NDArray[np.float64]
@@ -141,7 +144,7 @@ def test_a_set_is_simulated_once_and_then_left_to_the_model(drives: Drives) -> N
     assert certificate.good
     assert 0 < certificate.error < 0.1
     assert certificate.cases == 1
-    assert predictions.confirmed(road, points[-1])
+    assert predictions.error_at(road, points[-1]) <= DEFAULT.reduced_allowed
     assert predictions.certificates[road, DRIVE].cases == 2
 
 
@@ -169,6 +172,50 @@ def test_a_model_that_is_off_is_found_out_and_not_used(drives: Drives) -> None:
     wanted = drives.unknowns[:3]
     J = predictions.jacobians([((), wanted, point)], [DRIVE])[0][0]
     np.testing.assert_array_equal(J, drives.model.jacobian(DRIVE, wanted, point))
+
+
+def test_the_error_at_the_best_fit_is_that_of_models_that_gave_its_readings(drives: Drives) -> None:
+    predictions = Predictions(Evaluations(drives.model), [spoiled(item) for item in drives.modes])
+    point = drives.drawn(4)
+    assert predictions.error_at((), point) == 0.0
+    predictions.certificates[(), DRIVE] = DriveCertificate((), DRIVE, DEFAULT.reduced_allowed)
+    assert predictions.error_at((), point) > DEFAULT.reduced_allowed
+    assert not predictions.certificates[(), DRIVE].good
+
+
+def test_models_too_coarse_for_readings_may_still_give_sensitivities(drives: Drives) -> None:
+    predictions = Predictions(Evaluations(drives.model), drives.modes)
+    point, wanted = drives.drawn(4), drives.unknowns[:3]
+    error = (DEFAULT.reduced_allowed + DEFAULT.reduced_allowed_sensitivities) / 2
+    predictions.certificates[(), DRIVE] = DriveCertificate((), DRIVE, DEFAULT.reduced_allowed, error, 0.1, 1)
+    (readings,) = predictions.predict([((), point)], [DRIVE])[0]
+    np.testing.assert_array_equal(readings, drives.model.predict(DRIVE, point))
+    (J,) = predictions.jacobians([((), wanted, point)], [DRIVE])[0]
+    _, expected = drives.model.reduced_jacobian(DRIVE, drives.modes[DRIVE], wanted, point)
+    np.testing.assert_array_equal(J, expected)
+
+
+@pytest.mark.parametrize(
+    ("verdict", "lead", "misfit", "allowed"),
+    [
+        (UNEXPLAINED, 300.0, 100.0, DEFAULT.reduced_allowed_far),
+        (UNEXPLAINED, 30.0, 100.0, 3.0),
+        (UNEXPLAINED, 30.0, 400.0, 1.5),
+        (UNEXPLAINED, 3.0, 100.0, DEFAULT.reduced_allowed),
+        (NO_GAP, 300.0, 100.0, DEFAULT.reduced_allowed),
+    ],
+)
+def test_the_error_that_cannot_change_a_verdict_grows_with_its_lead(
+    verdict: str, lead: float, misfit: float, allowed: float
+) -> None:
+    ranking = tuple(
+        RankedSet((), score, 0.5, None, outside=outside)
+        for score, outside in ((0.0, verdict == UNEXPLAINED), (-lead, False))
+    )
+    judgement = Judgement(verdict, ranking, {}, ranking, ())
+    best = SimpleNamespace(misfit=misfit, readings=100, members=())
+    result = SimpleNamespace(judgement=judgement, robustness=None, best=best)
+    assert allowed_error(cast(Ranking, result), DEFAULT) == pytest.approx(allowed)
 
 
 def diagnosed(drives: Drives, **options: Any) -> DiagnosisData:
@@ -202,7 +249,7 @@ def test_the_verdict_is_that_of_simulations_alone(drives: Drives, never: Diagnos
 def test_where_the_best_fit_is_not_confirmed_everything_is_simulated(
     drives: Drives, never: DiagnosisData, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(Predictions, "confirmed", lambda *_: False)
+    monkeypatch.setattr(Predictions, "error_at", lambda *_: 2 * DEFAULT.reduced_allowed_far)
     result = diagnosed(drives)
     assert result.to_dict()["reduced"]["used"] is False
     assert result.best.log_evidence == pytest.approx(never.best.log_evidence, abs=1e-6)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TypeVar
+from typing import Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,14 @@ from tyrefem.brief import Brief
 
 Array = NDArray[np.float64]
 Key = TypeVar("Key")
+
+
+class Responses(Protocol):
+    """Whitened responses ``columns`` (n, m) to heat at one place. It is hashed by identity."""
+
+    @property
+    def columns(self) -> Array:
+        """(n, m)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,6 +69,27 @@ class ProjectedData(Brief):
     def misfit(self) -> float:
         """d^T P d: |r|^2 + |x/sd|^2 at the best x, without any heat."""
         return float(self.data @ self.times(self.data))
+
+    @cached_property
+    def _overlaps(self) -> dict[Responses, Array]:
+        return {}
+
+    @cached_property
+    def _grams(self) -> dict[tuple[Responses, Responses], Array]:
+        return {}
+
+    def overlap(self, place: Responses) -> Array:
+        """(m,) Phi^T P d of a place's responses; kept."""
+        if place not in self._overlaps:
+            self._overlaps[place] = place.columns.T @ self.times(self.data)
+        return self._overlaps[place]
+
+    def gram(self, first: Responses, second: Responses) -> Array:
+        """(m_1, m_2) Phi_1^T P Phi_2 of two places' responses; kept."""
+        if (first, second) not in self._grams:
+            matrix = first.columns.T @ self.times(second.columns)
+            self._grams[first, second], self._grams[second, first] = matrix, matrix.T
+        return self._grams[first, second]
 
     def with_sources(self, columns: Array) -> HeatData:
         """The statistics of sources with responses ``columns`` (n, m)."""

@@ -115,7 +115,9 @@ def misfit(data: ProjectedData, sources: Sequence[tuple[Place, Course]]) -> floa
 
 def _joint(data: ProjectedData, sources: Sequence[tuple[Place, Course]]) -> HeatData:
     """Statistics of the sources' coefficients, each of unit prior sd."""
-    return data.with_sources(np.hstack([place.sd * place.columns @ course.factor for place, course in sources]))
+    scaled = [(place, place.sd * course.factor) for place, course in sources]
+    gram = [[left.T @ data.gram(place, other) @ right for other, right in scaled] for place, left in scaled]
+    return HeatData(np.block(gram), np.concatenate([factor.T @ data.overlap(place) for place, factor in scaled]))
 
 
 def place_shares(
@@ -140,7 +142,11 @@ def place_shares(
         if place.inside and layers > 0:
             prior = 0.25 if place.where == ALL_LAYERS else 0.25 / layers
         logs[place.station, place.where] = math.log(prior) + log_mean_exp(
-            [evidence(data, [*others, (replace(place, sd=size * place.sd), kind)]) for kind in kinds for size in SIZES]
+            [
+                evidence(data, [*others, (place, replace(kind, factor=size * kind.factor))])
+                for kind in kinds
+                for size in SIZES
+            ]
         )
     return shares(logs)
 

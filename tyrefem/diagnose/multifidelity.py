@@ -57,7 +57,8 @@ class Predictions(Brief):
 
     The first point of every set of effects at every drive is also simulated with fixed steps; the difference gives the
     certificate. A set is simulated if its effects cannot be reduced, or if the difference exceeds the settings.
-    The object is mutable: it collects the certificates.
+    Sensitivities need less accuracy, because the steps of a fit correct them. The object is mutable: it collects the
+    certificates.
 
     Parameters
     ----------
@@ -101,7 +102,7 @@ class Predictions(Brief):
     ) -> list[list[Array]]:
         """Jacobians (n_blocks, n_unknowns) at some drives for every set with its unknowns and values."""
         wanted = [(k, i) for k in range(len(queries)) for i in numbers]
-        modal = [(k, i) for k, i in wanted if self.modes and self._is_certified(queries[k][0], i)]
+        modal = [(k, i) for k, i in wanted if self.modes and self._has_sensitivities(queries[k][0], i)]
         answers = self.evaluations.of("reduced_jacobian", [(i, self.modes[i], *queries[k][1:]) for k, i in modal], tick)
         tables = {
             pair: jacobian for pair, (status, jacobian) in zip(modal, answers, strict=True) if status[0] == FOLLOWED
@@ -110,18 +111,22 @@ class Predictions(Brief):
         tables |= zip(left, self.evaluations.of("jacobian", [(i, *queries[k][1:]) for k, i in left], tick), strict=True)
         return [[tables[k, i] for i in numbers] for k in range(len(queries))]
 
-    def confirmed(self, members: Members, values: Values) -> bool:
-        """Whether simulations confirm a point at every drive where reduced models gave the readings."""
+    def error_at(self, members: Members, values: Values) -> float:
+        """Largest difference from simulations, as a whitened norm, where reduced models gave the readings.
+
+        0 where they gave none; infinite if a model has no answer at this point.
+        """
         numbers = [
             i for i in range(len(self.evaluations.model.drives)) if self.modes and self._is_certified(members, i)
         ]
         modal = self._by_model([(members, values)], numbers, None)
         answers = self.evaluations.of("predict", [(i, values) for i in numbers])
         self.simulated += len(numbers)
-        pairs = [(i, modal.get((0, i)), answer) for i, answer in zip(numbers, answers, strict=True)]
-        return all(
-            row is not None and self._certificate_after(members, i, row, answer).good for i, row, answer in pairs
-        )
+        errors = [0.0]
+        for i, answer in zip(numbers, answers, strict=True):
+            row = modal.get((0, i))
+            errors.append(np.inf if row is None else self._certificate_after(members, i, row, answer).whitened_norm)
+        return float(max(errors))
 
     def to_dict(self) -> dict[str, Any]:
         """Contents of `verdict.json` under "reduced"."""
@@ -180,6 +185,11 @@ class Predictions(Brief):
     def _is_certified(self, members: Members, number: int) -> bool:
         known = self.certificates.get((members, number))
         return known is not None and known.good
+
+    def _has_sensitivities(self, members: Members, number: int) -> bool:
+        """Whether the sensitivities of the reduced model may be used for this set."""
+        known = self.certificates.get((members, number))
+        return known is not None and known.whitened_norm <= self.settings.reduced_allowed_sensitivities
 
     def _certificate_after(self, members: Members, number: int, modal: Array, simulated: Array) -> DriveCertificate:
         """The certificate after one more point."""

@@ -31,10 +31,14 @@ USUAL_P = 0.01
 
 @dataclass(eq=False)
 class RankedBeside(Brief):
-    """Sets beside one discrepancy model: those fitted beside it, and estimates ln(prior) + ln evidence of others."""
+    """Sets beside one discrepancy model: those fitted beside it, and estimates ln(prior) + ln evidence of others.
+
+    ``open``: effects that may be named; if there are any, of the sets with all of them only the best one is fitted.
+    """
 
     problem: SelectionProblem
     discrepancy: Discrepancy
+    open: Members = ()
     fits: dict[Members, FittedSet] = field(default_factory=dict)
     estimates: dict[Members, float] = field(default_factory=dict)
     _here: Residuals | None = None
@@ -77,8 +81,11 @@ class RankedBeside(Brief):
         """Largest probability of the misfit of a fitted set."""
         return max((fit.p_value for fit in self.fits.values()), default=0.0)
 
-    def begin(self, fits: Mapping[Members, FittedSet]) -> None:
-        """Fit the leading sets beside the discrepancy, from their fits without it; no effect first."""
+    def begin(self, fits: Mapping[Members, FittedSet], most: int | None = None) -> None:
+        """Fit the leading sets beside the discrepancy, from their fits without it; no effect first.
+
+        ``most``: largest number of leading sets; default: as in the settings.
+        """
         residuals, problem = self.residuals, self.problem
         estimates = {
             members: problem.prior(members) + evidence(state_beside(residuals, fit), residuals.log_det)
@@ -93,7 +100,7 @@ class RankedBeside(Brief):
         estimates[()] = max(of_origin, estimates[()])
         ahead = sorted(estimates, key=lambda members: -estimates[members])
         near = [members for members in ahead if estimates[members] > estimates[ahead[0]] - FAR]
-        chosen = near[: residuals.settings.beside_sets]
+        chosen = self._deciding(near)[: most or residuals.settings.beside_sets]
         if () in near and () not in chosen:
             chosen.append(())
         restarted = [()] if from_origin and () in chosen else []
@@ -129,16 +136,22 @@ class RankedBeside(Brief):
         settings = self.problem.settings
         for _ in range(2):
             top = max(map(self.score, self.fits))
-            near = [
+            ahead = [
                 members
                 for members, value in sorted(self.estimates.items(), key=lambda item: -item[1])
                 if value > top - settings.near_score and self._start(members) is not None
-            ][: settings.beside_sets]
+            ]
+            near = self._deciding(ahead)[: settings.beside_sets]
             if not near:
                 return
             starts = {members: start for members in near if (start := self._start(members)) is not None}
             self._take(first_fits(self.residuals, self.problem.predictions, near, starts, self.problem._count))
             self._estimate()
+
+    def _deciding(self, ahead: Sequence[Members]) -> list[Members]:
+        """The sets that can change whether the open effects are named; ``ahead``: best first."""
+        every = [members for members in ahead if self.open and set(self.open) <= set(members)]
+        return [members for members in ahead if members not in every[1:]]
 
     def _take(self, fits: Sequence[FittedSet]) -> None:
         for fit in fits:
@@ -215,7 +228,9 @@ def _without(fit: FittedSet, member: Candidate, log_det: float) -> float:
     return evidence(part, log_det)
 
 
-def robustness(problem: SelectionProblem, scored: Sequence[ScoredSet], *, certain: bool) -> Robustness:
+def robustness(
+    problem: SelectionProblem, scored: Sequence[ScoredSet], *, certain: bool, explained: bool = True
+) -> Robustness:
     """Sets of effects beside every discrepancy model.
 
     The leading sets, and no effect, are fitted together with the model's unknowns; others are judged in the linear
@@ -224,6 +239,9 @@ def robustness(problem: SelectionProblem, scored: Sequence[ScoredSet], *, certai
     Parameters
     ----------
     scored : the sets without a discrepancy. certain : True: improbable models get no further fits.
+    explained : False: no set explains the data, so the models matter only for effects that act beside all of them. Only
+        sets that can change their probabilities are fitted. As soon as there is no such effect, the other models get
+        two fits: no effect, and the leading set.
     """
     settings = problem.settings
     fits = {problem.ordered(entry.members): entry.fit for entry in scored if entry.fit is not None}
@@ -235,15 +253,24 @@ def robustness(problem: SelectionProblem, scored: Sequence[ScoredSet], *, certai
         ),
         key=lambda entry: -entry.score,
     )
+    finished = [under(Discrepancy(NONE, 0.0), problem.residuals, alone)]
     ranked: dict[str, RankedBeside] = {}
-    for discrepancy in _sizes_in_order(problem, fits):
-        known = ranked.get(discrepancy.name)
-        if known is not None and not _further(known, discrepancy):
-            continue
-        beside = RankedBeside(problem, discrepancy)
-        beside.begin(fits)
-        if known is None or _total(beside.scored()) > _total(known.scored()):
-            ranked[discrepancy.name] = beside
+    for name, sizes in _by_cost(problem, fits).items():
+        left = () if explained else Robustness(tuple(finished)).open(settings.named_probability)
+        full = explained or bool(left)
+        for discrepancy in sizes:
+            known = ranked.get(name)
+            if known is not None and not _further(known, discrepancy):
+                continue
+            beside = RankedBeside(problem, discrepancy, left)
+            beside.begin(fits, None if full else 1)
+            if known is None or _total(beside.scored()) > _total(known.scored()):
+                ranked[name] = beside
+        if not explained:
+            beside = ranked[name]
+            if full:
+                beside.further()
+            finished.append(under(beside.discrepancy, beside.residuals, beside.scored()))
     share = (1 - settings.right_model) / max(len(ranked), 1)
 
     def result() -> Robustness:
@@ -259,11 +286,13 @@ def robustness(problem: SelectionProblem, scored: Sequence[ScoredSet], *, certai
         return Robustness(ordered, log_evidence=float(np.logaddexp.reduce(scores)))
 
     first = result()
+    if not explained:
+        return first
     probable = {model.name for model in first.models if model.probability > PROBABLE}
-    left = [beside for name, beside in ranked.items() if name in probable or not certain]
-    for beside in left:
+    unfinished = [beside for name, beside in ranked.items() if name in probable or not certain]
+    for beside in unfinished:
         beside.further()
-    return result() if left else first
+    return result() if unfinished else first
 
 
 def _further(known: RankedBeside, discrepancy: Discrepancy) -> bool:
@@ -281,6 +310,7 @@ def beside_strain_laws(problem: SelectionProblem, robust: Robustness, fits: Sequ
     one that the study cannot run, or that needs further inputs.
     """
     residuals, evaluations = problem.residuals, problem.predictions.evaluations
+    named = problem.ordered(max((fit.members for fit in fits), key=len))
     numbers = range(len(residuals.runs))
     tried, untried = [], []
     for name, law in strain_laws().items():
@@ -290,7 +320,7 @@ def beside_strain_laws(problem: SelectionProblem, robust: Robustness, fits: Sequ
         if not answers or not all(np.isfinite(change).all() for change in answers):
             untried.append(name)
             continue
-        beside = RankedBeside(problem, beside_law(residuals, name, answers))
+        beside = RankedBeside(problem, beside_law(residuals, name, answers), named)
         beside.begin({problem.ordered(fit.members): fit for fit in fits})
         beside.further()
         law_sets = under(beside.discrepancy, beside.residuals, beside.scored())
@@ -307,8 +337,11 @@ def fit_beside(problem: SelectionProblem, model: UnderDiscrepancy, fit: FittedSe
     return beside
 
 
-def _sizes_in_order(problem: SelectionProblem, fits: Mapping[Members, FittedSet]) -> list[Discrepancy]:
-    """The models; of correlated readings only the size that explains the fits best."""
+def _by_cost(problem: SelectionProblem, fits: Mapping[Members, FittedSet]) -> dict[str, list[Discrepancy]]:
+    """The models by name with their sizes, those without further unknowns first.
+
+    Of correlated readings there is only the size that explains the fits best.
+    """
     every = list(discrepancies(problem.residuals))
     sizes = [each for each in every if each.name == READINGS]
 
@@ -320,7 +353,11 @@ def _sizes_in_order(problem: SelectionProblem, fits: Mapping[Members, FittedSet]
         )
 
     chosen = max(sizes, key=best) if sizes else None
-    return [each for each in every if each.name != READINGS or each is chosen]
+    models: dict[str, list[Discrepancy]] = {}
+    for each in sorted(every, key=lambda discrepancy: bool(discrepancy.nuisance)):
+        if each.name != READINGS or each is chosen:
+            models.setdefault(each.name, []).append(each)
+    return models
 
 
 def _total(scored: Sequence[ScoredSet]) -> float:

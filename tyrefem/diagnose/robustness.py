@@ -101,17 +101,28 @@ class Robustness(Brief):
 
     def agrees(self, candidate: Candidate) -> bool:
         """Whether an effect has the same sign beside every model, and beside probable models like amounts (`APART`)."""
+        if not self._one_sign(candidate):
+            return False
         for unknown in candidate.amplitudes:
-            known = [(model.probability, model.values.get(unknown.key)) for model in self.counted]
+            known = [(model.probability, model.values[unknown.key]) for model in self.counted]
             first = known[0][1]
-            if first is None:
-                return False
             for probability, other in known[1:]:
-                if other is None or other[0] * first[0] <= 0:
-                    return False
                 if probability > 0.01 and abs(other[0] - first[0]) > APART * math.hypot(other[1], first[1]):
                     return False
         return True
+
+    def _one_sign(self, candidate: Candidate) -> bool:
+        """Whether every model has an amount of an effect, all of the same sign."""
+        for unknown in candidate.amplitudes:
+            amounts = [model.values.get(unknown.key, (0.0, 0.0))[0] for model in self.counted]
+            if not (min(amounts) > 0 or max(amounts) < 0):
+                return False
+        return True
+
+    def open(self, probability: float) -> Members:
+        """Effects that `robust` may still name when further models are added: probable, and of one sign, so far."""
+        members = {member.key: member for model in self.models for fitted in model.fits for member in fitted}
+        return tuple(each for each in members.values() if self.least(each.key) >= probability and self._one_sign(each))
 
     def robust(self, candidates: Iterable[Candidate], probability: float) -> Members:
         """Effects that act with at least this probability beside every model, with amounts that agree.

@@ -227,14 +227,20 @@ class _Entries:
         self._by_name: dict[Any, list[dict[str, Any]]] = {}
         for entry in entries:
             self._by_name.setdefault(entry.get("name"), []).append(entry)
+        self._known: dict[tuple[str | None, Choice, tuple[str, ...]], dict[str, Any]] = {}
 
     def of(self, unknown: Unknown) -> dict[str, Any]:
         """The entry of an unknown's effect; a new one if there is none."""
-        of_name = self._by_name.setdefault(unknown.effect, [])
-        for entry in of_name:
-            if unknown.belongs_to(entry):
-                return entry
+        effect = unknown.effect, unknown.choice, unknown.runs
+        if effect not in self._known:
+            self._known[effect] = self._stated(unknown) or self._added(unknown)
+        return self._known[effect]
+
+    def _stated(self, unknown: Unknown) -> dict[str, Any] | None:
+        of_name = self._by_name.get(unknown.effect, ())
+        return next((entry for entry in of_name if unknown.belongs_to(entry)), None)
+
+    def _added(self, unknown: Unknown) -> dict[str, Any]:
         entry = unknown.entry
-        of_name.append(entry)
         self.entries.append(entry)
         return entry

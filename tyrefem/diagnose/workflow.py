@@ -19,7 +19,7 @@ from tyrefem.diagnose.diagnosis import DiagnosisData
 from tyrefem.diagnose.effort import check_effort
 from tyrefem.diagnose.energy_shapes import SHAPE
 from tyrefem.diagnose.evaluations import Evaluations, evaluating
-from tyrefem.diagnose.fits import FittedSet, first_fits
+from tyrefem.diagnose.fits import FittedSet, first_fits, fitted_beside
 from tyrefem.diagnose.forward_model import ForwardModel
 from tyrefem.diagnose.heat_over_time import heat_over_time
 from tyrefem.diagnose.heat_patches import patches
@@ -159,15 +159,21 @@ def _look(
         predictions = Predictions(
             evaluations, [response.modes for response in known] if settings.reduced == "auto" else ()
         )
-        ranking = rank(
-            residuals, predictions, candidates, method, _SimulationCounter(work.tick), law_replaced=law_replaced
-        )
-        if not predictions.confirmed(ranking.best.members, ranking.best.values):
+
+        def ranked_with(predictions: Predictions) -> Ranking:
+            tick = _SimulationCounter(work.tick)
+            return rank(residuals, predictions, candidates, method, tick, law_replaced=law_replaced)
+
+        ranking = ranked_with(predictions)
+        error = predictions.error_at(ranking.best.members, ranking.best.values)
+        confirmed: Ranking | None = ranking if error <= allowed_error(ranking, settings) else None
+        if confirmed is not None and error > settings.reduced_allowed:
+            confirmed = _simulated_best(ranking, replace(predictions, modes=()))
+        if confirmed is None:
             work.tick("reduced models are not accurate at the best fit: repeating with simulations")
             predictions = replace(predictions, modes=(), given_up=True)
-            ranking = rank(
-                residuals, predictions, candidates, method, _SimulationCounter(work.tick), law_replaced=law_replaced
-            )
+            confirmed = ranked_with(predictions)
+        ranking = confirmed
         values, sd, missing_unknowns = _missing_unknowns(residuals, ranking)
         change = changes(residuals, values, sd, missing_unknowns)
         work.tick("running the amended study")
@@ -327,8 +333,15 @@ def rank(
     best_fit = ahead.fit or (null if ahead.outside else fit_of(ahead.members))
     if judgement.verdict == NO_GAP:
         return Ranking(judgement, best_fit, null, missing, fit_of, movements_of(best_fit))
+<<<<<<< HEAD
     robust = robustness(problem, scored, certain=judgement.verdict == IDENTIFIED and not law_replaced)
     revision = beside_discrepancies(judgement, robust, settings, law_replaced=law_replaced)
+=======
+    robust = robustness(
+        problem, scored, certain=judgement.verdict == IDENTIFIED, explained=judgement.verdict != UNEXPLAINED
+    )
+    revision = beside_discrepancies(judgement, robust, settings)
+>>>>>>> 627f0d0 (Diagnosis far from the study's model: fewer fits beside discrepancies, no repeated search, kept statistics)
     if partly := revision.members:
         if tick:
             tick("trying other strain laws")
@@ -350,6 +363,33 @@ def rank(
     leading = robust.models[0]
     of_effects = supports(leading.residuals or residuals, best_fit, leading.fits, candidates, prior)
     return Ranking(judgement, best_fit, null, missing, fit_of, moved, robust, of_effects)
+
+
+def allowed_error(ranking: Ranking, settings: DiagnosisSettings) -> float:
+    """Largest error of the reduced models at the best fit, as a whitened norm, that cannot change the verdict.
+
+    An error e shifts the ln evidence by e sqrt(misfit / readings) times a standard normal number. A verdict
+    "unexplained" or "partly identified" is often decided by hundreds of nats; another one needs the usual accuracy.
+    """
+    judgement, robust = ranking.judgement, ranking.robustness
+    if judgement.verdict not in (UNEXPLAINED, PARTLY) or not judgement.best.outside:
+        return settings.reduced_allowed
+    lead = judgement.best.score - judgement.ranking[1].score
+    if judgement.verdict == PARTLY and robust is not None:
+        chances = [robust.least(member.key) for member in ranking.best.members]
+        lead = min([lead, *(math.log(max(p, 1e-300) / max(1 - p, 1e-300)) for p in chances)])
+    shift = math.sqrt(max(ranking.best.misfit / ranking.best.readings, 1.0))
+    far = min(lead / (settings.reduced_shift * shift), settings.reduced_allowed_far)
+    return max(far, settings.reduced_allowed)
+
+
+def _simulated_best(ranking: Ranking, predictions: Predictions) -> Ranking:
+    """The ranking with its best fit continued by simulations."""
+    robust = ranking.robustness
+    if ranking.judgement.verdict != PARTLY or robust is None or (beside := robust.models[0].residuals) is None:
+        return ranking
+    (fit,) = fitted_beside(predictions, [(ranking.best, beside)])
+    return replace(ranking, best=fit)
 
 
 class _UnknownOrigin:

@@ -21,12 +21,16 @@ from typing import Any
 from pydantic import GetCoreSchemaHandler
 from pydantic_core import CoreSchema, core_schema
 
+from tyrefem.cache import Cache
 from tyrefem.effects.effect import Effect, Parameter, Prior
 from tyrefem.effects.state import EffectState
 from tyrefem.errors import InputError, nearest
 from tyrefem.output import note_input
 
 __all__ = ["Effect", "EffectOf", "EffectState", "Parameter", "Prior", "catalogue", "use_effects"]
+
+#: Effects by class and entry as written.
+_READ: Cache[Effect] = Cache(size=4096)
 
 
 @functools.cache
@@ -132,7 +136,9 @@ class EffectOf:
         name = value.get("name")
         if not isinstance(name, str) or name not in known:
             raise InputError(f"unknown effect {name!r:.40}{nearest(str(name), known)}", field="name")
-        return known[name].check({key: entry for key, entry in value.items() if key != "name"})
+        effect, entry = known[name], {key: entry for key, entry in value.items() if key != "name"}
+        # A fit reads hundreds of studies that differ in one effect; effects are immutable, so studies share them.
+        return _READ.get((effect, repr(entry)), lambda: effect.check(entry))
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         return core_schema.no_info_plain_validator_function(self)

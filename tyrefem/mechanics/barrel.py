@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.cache import Cache
 from tyrefem.errors import InputError
 from tyrefem.mechanics.finite_elements import GaussPoints, PointEnergies
 from tyrefem.mechanics.footprint.pressed_tyre import pressed_tyre
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
     from tyrefem.mechanics.solid.inflation import Inflation
 
 Array = NDArray[np.float64]
+#: Tyres in the cylinder by inflated tyre, deflection and start; studies with the same inflated tyre share them.
+_FLATTENED: Cache[Flattened] = Cache(size=32)
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,7 +92,8 @@ def provider(study: StudyData) -> Callable[[LoadCase], StrainCycle]:
             return None
         tyre, known = inflated(pressure), solved.setdefault(pressure, [])
         less = [state for state in known if state.deflection <= deflection]
-        known.append(flatten(tyre, deflection, max(less, key=lambda state: state.deflection, default=None)))
+        start = max(less, key=lambda state: state.deflection, default=None)
+        known.append(_FLATTENED.get((tyre, deflection, start), lambda: flatten(tyre, deflection, start)))
         return known[-1]
 
     def cycle(case: LoadCase) -> StrainCycle:
