@@ -342,8 +342,10 @@ def _by_cost(problem: SelectionProblem, fits: Mapping[Members, FittedSet]) -> di
 
     Of correlated readings there is only the size that explains the fits best.
     """
-    every = list(discrepancies(problem.residuals))
-    sizes = [each for each in every if each.name == READINGS]
+    every = sorted(discrepancies(problem.residuals), key=lambda discrepancy: bool(discrepancy.nuisance))
+    models: dict[str, list[Discrepancy]] = {}
+    for each in every:
+        models.setdefault(each.name, []).append(each)
 
     def best(discrepancy: Discrepancy) -> float:
         residuals = RankedBeside(problem, discrepancy).residuals
@@ -352,12 +354,7 @@ def _by_cost(problem: SelectionProblem, fits: Mapping[Members, FittedSet]) -> di
             for members, fit in fits.items()
         )
 
-    chosen = max(sizes, key=best) if sizes else None
-    models: dict[str, list[Discrepancy]] = {}
-    for each in sorted(every, key=lambda discrepancy: bool(discrepancy.nuisance)):
-        if each.name != READINGS or each is chosen:
-            models.setdefault(each.name, []).append(each)
-    return models
+    return {name: [max(sizes, key=best)] if name == READINGS else sizes for name, sizes in models.items()}
 
 
 def _total(scored: Sequence[ScoredSet]) -> float:

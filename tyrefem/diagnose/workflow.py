@@ -368,28 +368,28 @@ def rank(
 def allowed_error(ranking: Ranking, settings: DiagnosisSettings) -> float:
     """Largest error of the reduced models at the best fit, as a whitened norm, that cannot change the verdict.
 
-    An error e shifts the ln evidence by e sqrt(misfit / readings) times a standard normal number. A verdict
-    "unexplained" or "partly identified" is often decided by hundreds of nats; another one needs the usual accuracy.
+    An error e shifts the ln evidence by e sqrt(misfit / readings) times a standard normal number. Missing heat is often
+    ahead by hundreds of nats. Effects that are named beside every discrepancy model bear the error of another one;
+    their fit is then simulated. Other verdicts need the usual accuracy.
     """
-    judgement, robust = ranking.judgement, ranking.robustness
+    judgement = ranking.judgement
     if judgement.verdict not in (UNEXPLAINED, PARTLY) or not judgement.best.outside:
         return settings.reduced_allowed
+    if judgement.verdict == PARTLY:
+        return settings.reduced_allowed_far
     lead = judgement.best.score - judgement.ranking[1].score
-    if judgement.verdict == PARTLY and robust is not None:
-        chances = [robust.least(member.key) for member in ranking.best.members]
-        lead = min([lead, *(math.log(max(p, 1e-300) / max(1 - p, 1e-300)) for p in chances)])
     shift = math.sqrt(max(ranking.best.misfit / ranking.best.readings, 1.0))
     far = min(lead / (settings.reduced_shift * shift), settings.reduced_allowed_far)
     return max(far, settings.reduced_allowed)
 
 
-def _simulated_best(ranking: Ranking, predictions: Predictions) -> Ranking:
-    """The ranking with its best fit continued by simulations."""
+def _simulated_best(ranking: Ranking, predictions: Predictions) -> Ranking | None:
+    """The ranking with the fit of named effects continued by simulations; None if it no longer explains the data."""
     robust = ranking.robustness
     if ranking.judgement.verdict != PARTLY or robust is None or (beside := robust.models[0].residuals) is None:
         return ranking
     (fit,) = fitted_beside(predictions, [(ranking.best, beside)])
-    return replace(ranking, best=fit)
+    return replace(ranking, best=fit) if fit.p_value > LEAST_P else None
 
 
 class _UnknownOrigin:
