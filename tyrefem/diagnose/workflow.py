@@ -34,7 +34,7 @@ from tyrefem.diagnose.options import DiagnosisOptions, Method, SimulationWork, g
 from tyrefem.diagnose.partly import beside_discrepancies
 from tyrefem.diagnose.ranked_beside import beside_strain_laws, fit_beside, robustness
 from tyrefem.diagnose.residuals import Residuals, residuals_of
-from tyrefem.diagnose.robustness import Robustness
+from tyrefem.diagnose.robustness import LEAST_P, Robustness
 from tyrefem.diagnose.runs import MeasuredDrive, measured_drive, with_noise_of_data
 from tyrefem.diagnose.selection import SelectionProblem
 from tyrefem.diagnose.sensitivities import responses, sensitivities, unknowns_of
@@ -333,15 +333,13 @@ def rank(
     best_fit = ahead.fit or (null if ahead.outside else fit_of(ahead.members))
     if judgement.verdict == NO_GAP:
         return Ranking(judgement, best_fit, null, missing, fit_of, movements_of(best_fit))
-<<<<<<< HEAD
-    robust = robustness(problem, scored, certain=judgement.verdict == IDENTIFIED and not law_replaced)
-    revision = beside_discrepancies(judgement, robust, settings, law_replaced=law_replaced)
-=======
     robust = robustness(
-        problem, scored, certain=judgement.verdict == IDENTIFIED, explained=judgement.verdict != UNEXPLAINED
+        problem,
+        scored,
+        certain=judgement.verdict == IDENTIFIED and not law_replaced,
+        explained=judgement.verdict != UNEXPLAINED,
     )
-    revision = beside_discrepancies(judgement, robust, settings)
->>>>>>> 627f0d0 (Diagnosis far from the study's model: fewer fits beside discrepancies, no repeated search, kept statistics)
+    revision = beside_discrepancies(judgement, robust, settings, law_replaced=law_replaced)
     if partly := revision.members:
         if tick:
             tick("trying other strain laws")
