@@ -183,18 +183,6 @@ def test_the_error_at_the_best_fit_is_that_of_models_that_gave_its_readings(driv
     assert not predictions.certificates[(), DRIVE].good
 
 
-def test_models_too_coarse_for_readings_may_still_give_sensitivities(drives: Drives) -> None:
-    predictions = Predictions(Evaluations(drives.model), drives.modes)
-    point, wanted = drives.drawn(4), drives.unknowns[:3]
-    error = (DEFAULT.reduced_allowed + DEFAULT.reduced_allowed_sensitivities) / 2
-    predictions.certificates[(), DRIVE] = DriveCertificate((), DRIVE, DEFAULT.reduced_allowed, error, 0.1, 1)
-    (readings,) = predictions.predict([((), point)], [DRIVE])[0]
-    np.testing.assert_array_equal(readings, drives.model.predict(DRIVE, point))
-    (J,) = predictions.jacobians([((), wanted, point)], [DRIVE])[0]
-    _, expected = drives.model.reduced_jacobian(DRIVE, drives.modes[DRIVE], wanted, point)
-    np.testing.assert_array_equal(J, expected)
-
-
 @pytest.mark.parametrize(
     ("verdict", "lead", "misfit", "allowed"),
     [

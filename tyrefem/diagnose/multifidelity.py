@@ -57,8 +57,7 @@ class Predictions(Brief):
 
     The first point of every set of effects at every drive is also simulated with fixed steps; the difference gives the
     certificate. A set is simulated if its effects cannot be reduced, or if the difference exceeds the settings.
-    Sensitivities need less accuracy, because the steps of a fit correct them. The object is mutable: it collects the
-    certificates.
+    The object is mutable: it collects the certificates.
 
     Parameters
     ----------
@@ -102,7 +101,7 @@ class Predictions(Brief):
     ) -> list[list[Array]]:
         """Jacobians (n_blocks, n_unknowns) at some drives for every set with its unknowns and values."""
         wanted = [(k, i) for k in range(len(queries)) for i in numbers]
-        modal = [(k, i) for k, i in wanted if self.modes and self._has_sensitivities(queries[k][0], i)]
+        modal = [(k, i) for k, i in wanted if self.modes and self._is_certified(queries[k][0], i)]
         answers = self.evaluations.of("reduced_jacobian", [(i, self.modes[i], *queries[k][1:]) for k, i in modal], tick)
         tables = {
             pair: jacobian for pair, (status, jacobian) in zip(modal, answers, strict=True) if status[0] == FOLLOWED
@@ -185,11 +184,6 @@ class Predictions(Brief):
     def _is_certified(self, members: Members, number: int) -> bool:
         known = self.certificates.get((members, number))
         return known is not None and known.good
-
-    def _has_sensitivities(self, members: Members, number: int) -> bool:
-        """Whether the sensitivities of the reduced model may be used for this set."""
-        known = self.certificates.get((members, number))
-        return known is not None and known.whitened_norm <= self.settings.reduced_allowed_sensitivities
 
     def _certificate_after(self, members: Members, number: int, modal: Array, simulated: Array) -> DriveCertificate:
         """The certificate after one more point."""

@@ -72,8 +72,6 @@ class DiagnosisSettings:
     #: Largest difference of reduced model and simulation, whitened norm of a drive's readings. The ln evidence changes
     #: by about this much times a standard normal number.
     reduced_allowed: float = 1.0
-    #: The same with which the sensitivities of the reduced model may be used.
-    reduced_allowed_sensitivities: float = 5.0
     #: Largest accepted difference at the best fit if the verdict is decided by many nats, and the smallest lead over
     #: the shift of the ln evidence by this difference.
     reduced_allowed_far: float = 5.0
