@@ -168,8 +168,6 @@ class DiagnosisSettings:
     #: Sizes of a correlated discrepancy of the readings that are tried, K; it is alike over this share of a run.
     discrepancy_sizes: tuple[float, ...] = (0.5, 1.0, 2.0, 4.0)
     discrepancy_time: float = 0.3
-    #: Sizes of missing heat that are tried as a discrepancy, over its prior sd.
-    discrepancy_heat: tuple[float, ...] = (1.0, 3.0, 10.0)
     #: Steps of a fit beside a discrepancy; number of sets that are fitted beside it, at first and later.
     beside_steps: int = 6
     beside_sets: int = 4
