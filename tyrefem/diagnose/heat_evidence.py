@@ -17,7 +17,7 @@ Array = NDArray[np.float64]
 Key = TypeVar("Key")
 
 
-class Responses(Protocol):
+class PlaceResponses(Protocol):
     """Whitened responses ``columns`` (n, m) to heat at one place. It is hashed by identity."""
 
     @property
@@ -71,20 +71,20 @@ class ProjectedData(Brief):
         return float(self.data @ self.times(self.data))
 
     @cached_property
-    def _overlaps(self) -> dict[Responses, Array]:
+    def _overlaps(self) -> dict[PlaceResponses, Array]:
         return {}
 
     @cached_property
-    def _grams(self) -> dict[tuple[Responses, Responses], Array]:
+    def _grams(self) -> dict[tuple[PlaceResponses, PlaceResponses], Array]:
         return {}
 
-    def overlap(self, place: Responses) -> Array:
+    def overlap(self, place: PlaceResponses) -> Array:
         """(m,) Phi^T P d of a place's responses; kept."""
         if place not in self._overlaps:
             self._overlaps[place] = place.columns.T @ self.times(self.data)
         return self._overlaps[place]
 
-    def gram(self, first: Responses, second: Responses) -> Array:
+    def gram(self, first: PlaceResponses, second: PlaceResponses) -> Array:
         """(m_1, m_2) Phi_1^T P Phi_2 of two places' responses; kept."""
         if (first, second) not in self._grams:
             matrix = first.columns.T @ self.times(second.columns)
