@@ -310,8 +310,8 @@ def beside_strain_laws(problem: SelectionProblem, robust: Robustness, fits: Sequ
     one that the study cannot run, or that needs further inputs.
     """
     residuals, evaluations = problem.residuals, problem.predictions.evaluations
-    sets: list[Members] = [fit.members for fit in fits]
-    named = problem.ordered(max(sets, key=len))
+    largest = max([fit.members for fit in fits], key=len)
+    named = problem.ordered(largest)
     numbers = range(len(residuals.runs))
     tried, untried = [], []
     for name, law in strain_laws().items():
