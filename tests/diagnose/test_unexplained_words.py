@@ -70,7 +70,7 @@ def test_a_strain_energy_that_explains_little_is_not_told(case: Case) -> None:
 def test_effects_that_may_act_beside_a_discrepancy_are_in_the_set(case: Case) -> None:
     d = with_models(case.diagnosis, left=0.2, leading_p=0.5)
     assert possible_effects(d) == {"hot-road": pytest.approx(0.4)}
-    assert "Beside it may act, not sure enough to be named: hot-road (40 %)." in " ".join(verdict_words(d))
+    assert "If that holds, these effects may act beside it: hot-road (40 %)." in " ".join(verdict_words(d))
     assert record(d)["possible_effects"] == {"hot-road": pytest.approx(0.4)}
     assert "hot-road" in outcome_row(d)["set"]
     assert outcome_row(d)["named"] == []

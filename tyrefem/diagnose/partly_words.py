@@ -121,7 +121,11 @@ def beyond_noise(rms_of_all: float, noise: float) -> float:
 def beside_it_words(d: DiagnosisData) -> str:
     """Effects that may act beside the discrepancy that explains the deviation, as a sentence; empty if none may."""
     shown = [f"{key} ({percent(share)})" for key, share in possible_effects(d).items()]
-    return f"Beside it may act, not sure enough to be named: {', '.join(shown)}." if shown else ""
+    return (
+        f"If that holds, these effects may act beside it: {', '.join(shown)}. It is not sure, so none is named."
+        if shown
+        else ""
+    )
 
 
 def energy_words(d: DiagnosisData, fit: FittedSet) -> str:
