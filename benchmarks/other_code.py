@@ -4,18 +4,21 @@
 
 The plain belted tyre (`PlainTyre.body`): neo-Hookean rubber with cords, a pressure that follows the wall, no friction.
 Each code inflates the same section mesh from rest and presses it by 20 mm from its inflated state. Prints one table for
-each mesh; --quick: only the coarsest mesh. FElupe is under the GPL: only this benchmark and its test use it.
+each mesh, and one of the strains over all meshes; --quick: only the coarsest mesh. Goals hold for means of strain over
+patches of a stated size; strains at points grow without end at the sharp ends of belt and rim.
+FElupe is under the GPL: only this benchmark and its test use it.
 """
 
 from __future__ import annotations
 
 import argparse
 import csv
+import functools
 import math
 import os
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -25,6 +28,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 from numpy.typing import NDArray
+from strain_patches import Patches
 
 from tyrefem.mechanics.footprint.contact import Pressing
 from tyrefem.mechanics.footprint.elements import COMPONENTS, SectionElements, WheelAngles
@@ -43,12 +47,22 @@ except ModuleNotFoundError as error:
     sys.exit("this benchmark needs FElupe 11.3 or later: pip install felupe")
 
 Array = NDArray[np.float64]
+Sample = Callable[[Array, str], Array]
 #: Pa, m.
 PRESSURE, DEFLECTION = 2e5, 0.02
-#: Elements along the half section, and size of hexahedra round the wheel near the footprint, degrees.
-MESHES = ((8, 5.0), (8, 1.25), (14, 2.5), (20, 2.5))
+#: Elements along the half section and through the tread, and size of hexahedra round the wheel near the footprint,
+#: degrees.
+MESHES = ((8, 1, 5.0), (8, 1, 1.25), (14, 1, 2.5), (20, 1, 2.5), (28, 2, 5.0))
 #: Largest deviations.
 LOAD, AREA, STRAIN = 0.02, 0.05, 0.05
+#: Radii of the patches over which strains are averaged, m, and their goals: the smaller is not resolved by the meshes.
+PATCHES: dict[float, float | None] = {4e-3: STRAIN, 2e-3: None}
+#: Rows that are printed over all meshes.
+OVER_MESHES = ("patch of radius", "at a point")
+#: Meshes of the harmonics alone: elements along the half section and through ply, belt and tread; with these harmonics
+#: and angles of the strains, rad.
+FINER = ((20, (1, 1, 1)), (28, (1, 1, 2)), (40, (2, 2, 4)), (80, (2, 2, 6)))
+FINER_HARMONICS, FINER_ANGLES = 72, np.radians(np.r_[0.0:40.0:0.625, 40.0:181.0:5.0])
 #: Tread nearer to the road than this touches it, m: the film of an ink print.
 FILM = 1e-4
 UNIT = np.eye(3).reshape(3, 3, 1, 1, 1)
@@ -203,30 +217,12 @@ class Row:
         return (f"{self.quantity}, {self.unit}", *numbers, goal, self.met)
 
 
-def rows(body: Body, ours: Solution, theirs: Solution) -> Iterator[Row]:
-    """The comparison. The belt ends as a sharp corner in the rubber: strains at a point grow there with every finer
-    mesh, in both codes, and depend on the element; means over an element of the section settle."""
-    regions, weights = body.mesh.subdomains, body.rings.weights
-    rubber, belt = np.concatenate([regions[name] for name in RUBBER]), regions["belt"]
-    axial = body.rings.points[1][belt].mean(axis=1)
-    edge = belt[axial >= axial.max() - 1e-3]
+def rows(tyre: PlainTyre, body: Body, ours: Solution, theirs: Solution) -> Iterator[Row]:
+    """The comparison."""
+    regions = body.mesh.subdomains
 
     def row(quantity: str, unit: str, factor: float, value: Any, goal: float | None = None) -> Row:
         return Row(quantity, unit, factor * value(ours), factor * value(theirs), goal)
-
-    def mean(strain: Array, members: Array) -> Array:
-        """(3, 3, e, angles)."""
-        shares = weights[members] / weights[members].sum(axis=1)[:, None]
-        return np.asarray(np.einsum("ijeqm,eq->ijem", strain[:, :, members], shares))
-
-    def at_points(strain: Array, members: Array) -> Array:
-        return strain[:, :, members].reshape(3, 3, -1, strain.shape[-1])
-
-    def principal(strain: Array) -> float:
-        return float(np.abs(np.linalg.eigvalsh(np.moveaxis(strain, (0, 1), (-2, -1)))).max())
-
-    def shear(strain: Array) -> float:
-        return float(max(np.ptp(2 * strain[i, j], axis=-1).max() for i, j in ((0, 1), (0, 2), (1, 2))))
 
     def stretch(solution: Solution, name: str) -> tuple[Array, Array]:
         (layer,) = body.parts[name].cords
@@ -241,7 +237,7 @@ def rows(body: Body, ours: Solution, theirs: Solution) -> Iterator[Row]:
     yield row("growth of the radius by inflation", "mm", 1e3, lambda s: s.growth)
     yield row("load", "N", 1, lambda s: s.load, LOAD)
     yield row("contact area", "cm2", 1e4, lambda s: s.area, AREA)
-    yield row("area of nodes under pressure", "cm2", 1e4, lambda s: s.pressed_area, AREA)
+    yield row("area of nodes under pressure", "cm2", 1e4, lambda s: s.pressed_area)
     yield row("effective area, F2/int p2 dA", "cm2", 1e4, lambda s: s.effective_area)
     yield row("length of the pressure, rms", "mm", 1e3, lambda s: s.spread(0))
     yield row("width of the pressure, rms", "mm", 1e3, lambda s: s.spread(1))
@@ -249,21 +245,57 @@ def rows(body: Body, ours: Solution, theirs: Solution) -> Iterator[Row]:
         yield row(f"largest cord strain, {name}", "%", 100, lambda s, n=name: stretch(s, n)[0].max(), STRAIN)
         text = f"largest change of cord strain by the load, {name}"
         yield row(text, "%", 100, lambda s, n=name: np.abs(stretch(s, n)[1]).max(), STRAIN)
-    for part, taken in (("mean of an element", mean), ("at a point", at_points)):
-
-        def pressed(solution: Solution, members: Array, taken: Any = taken) -> Array:
-            return np.asarray(taken(solution.pressed, members))
-
-        def change(solution: Solution, members: Array, taken: Any = taken) -> Array:
-            return np.asarray(taken(solution.pressed - solution.inflated, members))
-
+    for of, part, edge, goal in samples(tyre, body):
         text = f"largest principal strain of rubber, {part}"
-        yield row(text, "%", 100, lambda s, of=pressed: principal(of(s, rubber)), STRAIN)
+        yield row(text, "%", 100, lambda s, of=of: principal(of(s.pressed, "rubber")), goal)
         for name in RUBBER:
             text = f"largest principal change by the load, {name}, {part}"
-            yield row(text, "%", 100, lambda s, of=change, m=regions[name]: principal(of(s, m)), STRAIN)
-        text = f"largest range of shear in the belt's last element, {part}"
-        yield row(text, "%", 100, lambda s, of=change: shear(of(s, edge)), STRAIN)
+            yield row(text, "%", 100, lambda s, of=of, n=name: principal(of(s.pressed - s.inflated, n)), goal)
+        text = f"largest range of shear {edge}, {part}"
+        yield row(text, "%", 100, lambda s, of=of, n=edge: shear(of(s.pressed - s.inflated, n)), goal)
+
+
+def principal(strain: Array) -> float:
+    """Largest principal strain of (3, 3, places, angles)."""
+    return float(np.abs(np.linalg.eigvalsh(np.moveaxis(strain, (0, 1), (-2, -1)))).max())
+
+
+def shear(strain: Array) -> float:
+    """Largest range over the angles of a shear strain of (3, 3, places, angles)."""
+    return float(max(np.ptp(2 * strain[i, j], axis=-1).max() for i, j in ((0, 1), (0, 2), (1, 2))))
+
+
+def samples(tyre: PlainTyre, body: Body) -> Iterator[tuple[Sample, str, str, float | None]]:
+    """Ways to take a strain (3, 3, e, 9, angles) of a part of the section: (3, 3, places, angles).
+
+    With each its name, its name of the belt's end, and the goal. The belt ends as a sharp corner in the rubber, the
+    held rim as another: strains at a point grow there with every finer mesh, in both codes, and have no goal. Nor have
+    means over an element, which is of another size on every mesh.
+    """
+    regions, weights = body.mesh.subdomains, body.rings.weights
+    rubber, belt = np.concatenate([regions[name] for name in RUBBER]), regions["belt"]
+    axial = body.rings.points[1][belt].mean(axis=1)
+    last, end = "in the belt's last element", "at the belt's end"
+    members = {**regions, "rubber": rubber, end: rubber, last: belt[axial >= axial.max() - 1e-3]}
+
+    @functools.cache
+    def patches(name: str, radius: float) -> Patches:
+        return Patches(body.rings, members[name], radius, tyre.belt_edge[:, None] if name == end else None)
+
+    for radius, goal in PATCHES.items():
+        yield (
+            lambda strain, name, r=radius: patches(name, r).means(strain),
+            f"patch of radius {1e3 * radius:g} mm",
+            end,
+            goal,
+        )
+
+    def of_elements(strain: Array, name: str) -> Array:
+        shares = weights[members[name]] / weights[members[name]].sum(axis=1)[:, None]
+        return np.asarray(np.einsum("ijeqm,eq->ijem", strain[:, :, members[name]], shares))
+
+    yield of_elements, "mean of an element", last, None
+    yield lambda strain, name: strain[:, :, members[name]].reshape(3, 3, -1, strain.shape[-1]), "at a point", last, None
 
 
 def field_difference(body: Body, ours: Solution, theirs: Solution, angles: Array) -> float:
@@ -291,7 +323,40 @@ def compare(along: int, fine: float, deflection: float = DEFLECTION, **settings:
         f"{ended - middle:.0f} s; "
         f"change of strain by the load differs by {100 * field_difference(body, ours, theirs, angles):.1f} % rms"
     )
-    return list(rows(body, ours, theirs)), text
+    return list(rows(tyre, body, ours, theirs)), text
+
+
+def over_meshes(tables: dict[str, list[Row]]) -> list[tuple[str, ...]]:
+    """Harmonics; FElupe (deviation) of every strain on every mesh, with a head."""
+    lines: list[tuple[str, ...]] = [("harmonics; FElupe (deviation), %", *tables)]
+    for places in zip(*tables.values(), strict=True):
+        if any(part in places[0].quantity for part in OVER_MESHES):
+            cells = (f"{row.harmonics:.2f}; {row.felupe:.2f} ({100 * row.deviation:+.1f})" for row in places)
+            lines.append((places[0].quantity, *cells))
+    return lines
+
+
+def harmonics_alone(meshes: Sequence[tuple[int, tuple[int, int, int]]] = FINER) -> list[tuple[str, ...]]:
+    """Strains of the harmonics alone, %, on finer meshes, with a head: which of them settle."""
+    columns: list[list[Row]] = []
+    sizes: list[str] = []
+    for along, through in meshes:
+        tyre = PlainTyre()
+        body = tyre.body(along, through)
+        solution = by_harmonics(body, FINER_HARMONICS, DEFLECTION, FINER_ANGLES)
+        taken = [
+            row for row in rows(tyre, body, solution, solution) if any(part in row.quantity for part in OVER_MESHES)
+        ]
+        columns.append(taken)
+        sizes.append(f"{body.mesh.t.shape[1]} elements")
+    lines = [(places[0].quantity, *(f"{row.harmonics:.2f}" for row in places)) for places in zip(*columns, strict=True)]
+    return [("harmonics alone, %", *sizes), *lines]
+
+
+def print_table(lines: Sequence[Sequence[str]]) -> None:
+    """Print a head and rows."""
+    head, *rest = (f"| {' | '.join(cells)} |" for cells in lines)
+    print("\n".join([head, "|" + "---|" * len(lines[0]), *rest]), flush=True)
 
 
 def main() -> None:
@@ -300,6 +365,7 @@ def main() -> None:
     parser.add_argument("--quick", action="store_true", help="only the coarsest mesh")
     parser.add_argument("--out", type=Path, help="CSV file of all tables")
     parser.add_argument("--mesh", nargs=2, type=float, metavar=("ALONG", "DEGREES"), help="only this mesh")
+    parser.add_argument("--through", type=int, default=1, help="elements through the tread of --mesh (default 1)")
     parser.add_argument("--penalty", type=float, help="contact stiffness of a tread node in FElupe, N/m")
     parser.add_argument("--full", action="store_true", help="FElupe integrates the dilatation in full: it locks")
     chosen = parser.parse_args()
@@ -308,16 +374,22 @@ def main() -> None:
         settings["penalty"] = chosen.penalty
     meshes = MESHES[:1] if chosen.quick else MESHES
     if chosen.mesh:
-        meshes = ((int(chosen.mesh[0]), chosen.mesh[1]),)
+        meshes = ((int(chosen.mesh[0]), chosen.through, chosen.mesh[1]),)
     head = ("quantity", "harmonics", "FElupe", "deviation", "goal", "met")
-    lines = []
-    for along, fine in meshes:
-        made, text = compare(along, fine, **settings)
-        print(f"\n{along} elements along, {fine:g} degrees: {text}\n")
-        print(f"| {' | '.join(head)} |\n|{'---|' * len(head)}", flush=True)
-        for row in made:
-            print(f"| {' | '.join(row.cells)} |", flush=True)
-            lines.append((f"{along} x {fine:g}", *row.cells))
+    lines: list[tuple[str, ...]] = []
+    tables: dict[str, list[Row]] = {}
+    for along, through, fine in meshes:
+        made, text = compare(along, fine, through=(1, 1, through), **settings)
+        name = f"{along} x {fine:g}" if through == 1 else f"{along} x {fine:g}, {through} through the tread"
+        tables[name] = made
+        print(f"\n{along} elements along, {through} through the tread, {fine:g} degrees: {text}\n")
+        print_table([head, *(row.cells for row in made)])
+        lines += [(name, *row.cells) for row in made]
+    if len(tables) > 1:
+        print("\nStrains over the meshes:\n")
+        print_table(over_meshes(tables))
+        print("\nStrains by harmonics on finer meshes:\n")
+        print_table(harmonics_alone())
     if chosen.out:
         with atomic_path(chosen.out) as path, path.open("w", newline="", encoding="utf-8") as file:
             csv.writer(file, lineterminator="\n").writerows([("mesh: elements along x degrees round", *head), *lines])

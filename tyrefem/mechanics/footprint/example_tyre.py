@@ -90,6 +90,12 @@ class PlainTyre:
         angle = np.where(s > self.crown_width, turn, first)
         return place, np.array([np.cos(angle), np.sin(angle)])
 
+    @property
+    def belt_edge(self) -> Array:
+        """Middle of the belt's end (2,) in (r, z), m."""
+        place, normal = self._meridian(np.array([self.belt_end * self.crown_width]))
+        return np.asarray((place + normal * 0.00075)[:, 0])
+
     def mesh(self, along: int = 24, through: tuple[int, int, int] = (1, 1, 1)) -> Any:
         """Quadrilaterals: ``along`` the half meridian, and through ply, belt and tread."""
         import skfem
