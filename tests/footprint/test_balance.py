@@ -16,6 +16,7 @@ from tyrefem.mechanics.footprint.elements import WheelAngles
 from tyrefem.mechanics.footprint.example_tyre import PlainTyre, pressurised, stress_free
 from tyrefem.mechanics.footprint.harmonic_balance import Balance
 from tyrefem.mechanics.footprint.harmonics import Harmonics
+from tyrefem.mechanics.footprint.large_motion import DeflectedState, LargeMotion
 from tyrefem.mechanics.footprint.nonlinear import NonlinearForces
 from tyrefem.mechanics.footprint.rotations import Rotations
 from tyrefem.mechanics.footprint.strain_harmonics import StrainHarmonics
@@ -163,3 +164,19 @@ def test_the_taut_tyre_is_never_softer(tyre: Pressing) -> None:
 def test_out_of_reach_says_how_far_it_got(tyre: Pressing) -> None:
     with pytest.raises(InputError, match=r"reaches .* mm \(.* N\), not 90 mm.*; mechanics.motion = .linear. is"):
         Balance(tyre, 8, steps=1).at_deflection(0.09)
+
+
+def test_a_deflection_whose_last_bit_is_rounded_is_reached(tyre: Pressing) -> None:
+    """Load steps add up to a deflection only within rounding."""
+
+    class Rounded(LargeMotion):
+        def balance(
+            self, start: DeflectedState, deflection: float, tolerance: float, load: float | None = None
+        ) -> DeflectedState:
+            return replace(start, deflection=float(np.nextafter(deflection, 0)), load=1.0)
+
+    balance = Balance(tyre, 6, 12)
+    balance.__dict__["motion"] = Rounded(tyre)
+    reached = balance._load_steps(0.01, None, 6)
+    assert reached.deflection == pytest.approx(0.01, rel=1e-12)
+    assert len(balance.path) == 2

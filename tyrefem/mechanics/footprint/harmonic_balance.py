@@ -19,6 +19,8 @@ COARSE, LADDER = 10, (16, 24)
 CONTACT_ON_THE_WAY, CONTACT = 48, 120
 #: Tolerance of the load steps, and distance to the target at which they end.
 ON_THE_WAY, NEAR = 1e-2, 0.15
+#: A deflection is reached within this, relatively: sums of steps are rounded.
+ROUNDING = 1e-12
 #: Tolerance of the numbers of harmonics before the last.
 BEFORE_LAST = 5e-3
 #: Smallest load step over the total, and largest number of steps.
@@ -142,7 +144,7 @@ class Balance:
         self.path[:] = [(0.0, 0.0)]
         for _ in range(self.steps):
             left = total - now.deflection if load is None else (load - now.load) / slope
-            if abs(left) <= NEAR * total * (load is not None):
+            if abs(left) <= (ROUNDING if load is None else NEAR) * total:
                 return now
             next_deflection = min(now.deflection + max(-step, min(left, step)), motion.largest_deflection)
             if next_deflection == now.deflection:
