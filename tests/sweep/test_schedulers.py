@@ -12,7 +12,7 @@ from worker_tasks import added, always_dies, dies_the_first_time, squared
 from tyrefem import study
 from tyrefem.errors import InputError
 from tyrefem.sweep.sweep import sweep
-from tyrefem.variants.dask_cluster import Dask
+from tyrefem.variants.dask_cluster import Dask, outcome_of
 from tyrefem.variants.execution import SweepSettings
 from tyrefem.variants.outcomes import Failed
 from tyrefem.variants.plan import plan_of
@@ -85,3 +85,9 @@ def test_variants_of_a_lost_piece_are_tried_one_by_one() -> None:
     assert scheduler.lost == 2
     assert outcomes.complete
     assert not outcomes.failed
+
+
+@pytest.mark.parametrize("status", ["finished", "lost", "pending"])
+def test_a_fetched_result_counts_also_if_its_worker_is_lost_afterwards(status: str) -> None:
+    assert outcome_of(status, {"answers": {"x": 1.0}}) == {"answers": {"x": 1.0}}
+    assert outcome_of("error", (KeyError, KeyError("gone"), None)) == Failed("lost by the cluster: 'gone'")

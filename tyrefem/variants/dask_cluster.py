@@ -119,12 +119,9 @@ class Dask:
                 # Results are fetched in the background; a result that is lost with its worker is computed again.
                 future, result = next(running)
                 place = places.pop(future.key)
-                if future.status == "finished":
-                    yield place, result
-                elif future.status == "error":
-                    yield place, Failed(f"lost by the cluster: {_reason(result)}")
-                else:
+                if future.status == "cancelled":
                     raise ClusterLostError(f"the Dask scheduler at {self.address} gave up its tasks ({future.status})")
+                yield place, outcome_of(future.status, result)
         finally:
             if self.client.status == "running":
                 self.client.cancel([*running.futures, *shared])
@@ -155,6 +152,17 @@ class Dask:
                     raise ClusterLostError(
                         f"the Dask scheduler at {self.address} has had no worker for {checked_at - last_seen:.0f} s"
                     )
+
+
+def outcome_of(status: str, result: Any) -> Any:
+    """The outcome of a task that was not cancelled, with the result that was fetched.
+
+    A result is there also if its worker was lost after it was fetched: the status is then "lost", or "pending".
+
+    >>> outcome_of("lost", 3.0), outcome_of("error", (ValueError, ValueError("killed"), None)).reason
+    (3.0, 'lost by the cluster: killed')
+    """
+    return Failed(f"lost by the cluster: {_reason(result)}") if status == "error" else result
 
 
 def _reason(result: Any) -> str:
