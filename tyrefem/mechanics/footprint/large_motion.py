@@ -169,7 +169,7 @@ class LargeMotion:
             if tangent and change <= ALIKE and not convex:
                 tangent = replace(tangent, forces=outside.forces(u))
             else:
-                tangent, convex = outside.at(u, np.float32), change > CONVEX
+                tangent, convex = outside.at(u, np.float32), bool(self._folding) and change > CONVEX
                 tangent = self._folding.convex(tangent) if convex else tangent
             gaps, normal_components, touching, _ = self._road(
                 replace(start, motion=u, forces=forces, deflection=deflection)
@@ -195,9 +195,10 @@ class LargeMotion:
                 if unstable > UNSTABLE:
                     return None
                 new = step.unstable is not None and self._folding.add(tangent, step.unstable)
-                if not new and (convex or not self._folding):
+                if new or (self._folding and not convex):
+                    tangent, convex = self._folding.convex(tangent), True
+                else:
                     damping *= 3
-                tangent, convex = self._folding.convex(tangent), True
                 step = newton_step(touching, closed, tangent, distance, end, rotations, damping=damping)
                 change = self._gradient_change(outside, step.motion)
             share = min(1.0, CORRECTION / max(change, 1e-300))
@@ -300,7 +301,7 @@ class LargeMotion:
         start = None
         if moment.rate is not None:
             motion, forces, _ = moment.rate
-            start = NewtonStep(motion, np.where(moment.forces > 0, forces, 0.0), 0, True, np.zeros_like(motion))
+            start = NewtonStep(motion, np.where(moment.forces > 0, forces, 0.0), 0, np.zeros_like(motion))
         closed = moment.forces > 0
         rate = self._rate(touching, closed, tangent, normal_components, accuracy, rotations, start)
         energy = np.pi * self.factors.work(tangent.product(rate.motion), rate.motion)

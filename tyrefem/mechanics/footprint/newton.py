@@ -24,16 +24,20 @@ DELAY = 4
 
 @dataclass(frozen=True, eq=False)
 class NewtonStep:
-    """A step (highest + 1, n_dofs), m; its contact forces (k,), N; iterations; ``stable``: the stiffness was positive
-    in all search directions; ``residual`` -g - J x - B' f, N per radian, that the search leaves; the ``unstable``
-    direction (highest + 1, n_dofs)."""
+    """A step (highest + 1, n_dofs), m; its contact forces (k,), N; iterations; ``residual`` -g - J x - B' f, N per
+    radian, that the search leaves; ``unstable``: the search direction with negative stiffness, if the search met
+    one."""
 
     motion: Array
     forces: Array
     iterations: int
-    stable: bool
     residual: Array
     unstable: Array | None = None
+
+    @property
+    def stable(self) -> bool:
+        """Whether the stiffness was positive in all search directions."""
+        return self.unstable is None
 
 
 @dataclass(frozen=True)
@@ -196,4 +200,4 @@ def newton_step(
             stiff, stiff_pushed = residual + size / before * stiff, pressed + size / before * stiff_pushed
     forces = np.zeros(len(touching.rows))
     forces[closed] = total
-    return NewtonStep(x, forces, count, stable, residual + damping * damped, None if stable else along)
+    return NewtonStep(x, forces, count, residual + damping * damped, None if stable else along)
