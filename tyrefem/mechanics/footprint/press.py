@@ -134,7 +134,7 @@ class Pressed(Brief):
 
     def curve(self, count: int = 10) -> Array:
         """(n, 2) deflection, m, and load, N, from zero load, with the same number of harmonics as the footprint; in
-        large motion the load steps and the footprint."""
+        large motion the footprint after its load steps, whose few harmonics make the load up to a quarter too high."""
         if self.balanced:
             before = [point for point in self.path if point[0] < 0.99 * self.footprint.deflection]
             return np.array([*before, (self.footprint.deflection, self.footprint.load)])
