@@ -33,8 +33,10 @@ def test_numbers_and_files(here: Path, capfd: pytest.CaptureFixture[str]) -> Non
     )
     assert numbers["error"] <= numbers["tolerance"]
     assert {"tyrefem", "numpy", "scikit-fem"} <= set(numbers["versions"])
-    curve = np.loadtxt(folder / "load-deflection.csv", delimiter=",", skiprows=1)
+    *columns, harmonics = np.loadtxt(folder / "load-deflection.csv", delimiter=",", skiprows=1).T
+    curve = np.column_stack(columns)
     assert (np.diff(curve, axis=0) > 0).all()
+    assert (harmonics == numbers["harmonics"]).all()
     # The tread touches more as it goes down: the curve stiffens and holds the footprint's own point.
     assert (np.diff(curve[:, 1], 2) > 0).all()
     assert np.interp(0.015, *curve.T) == pytest.approx(numbers["load_N"], rel=0.01)
@@ -82,8 +84,14 @@ def test_in_large_motion_the_tyre_is_softer_and_the_curve_is_its_way(
     assert large["load_N"] == pytest.approx(7595.0, rel=0.1)
     assert large["load_N"] < 0.8 * linear["load_N"]
     assert large["rolling_resistance_N"] < linear["rolling_resistance_N"]
-    curve = np.loadtxt(here / "large" / "load-deflection.csv", delimiter=",", skiprows=1)
+    table = here / "large" / "load-deflection.csv"
+    assert table.read_text(encoding="utf-8").startswith("deflection_m,load_N,harmonics\n")
+    *columns, harmonics = np.loadtxt(table, delimiter=",", skiprows=1).T
+    curve = np.column_stack(columns)
     assert (np.diff(curve, axis=0) > 0).all()
+    # Load steps have fewer harmonics than the footprint, and a higher load.
+    assert (harmonics[:-1] < harmonics[-1]).all()
+    assert harmonics[-1] == large["harmonics"]
     assert curve[-1] == pytest.approx([0.02, large["load_N"]], rel=1e-6)
     cords = (here / "large" / "cord-tension.csv").read_text(encoding="utf-8").splitlines()[1:]
     carried = [float(row.rsplit(",", 1)[1]) for row in cords if row.startswith("carcass")]

@@ -257,7 +257,7 @@ def _tables(
 ) -> dict[str, Iterable[Sequence[Any]]]:
     from tyrefem.mechanics.footprint.strain_harmonics import COMPONENTS
 
-    degrees = np.degrees(ANGLES)
+    degrees, harmonics = np.degrees(ANGLES), pressed.curve_harmonics(curve)
     strains: list[Sequence[Any]] = [
         ["place", "region", "r_m", "z_m", "angle_deg", *(f"e_{name}" for name in COMPONENTS)]
     ]
@@ -265,7 +265,7 @@ def _tables(
         history = pressed.cycle.strain(ANGLES, [place.element])[:, 0, place.point]
         strains += [[place.name, place.region, *place.place, *row] for row in np.column_stack([degrees, history.T])]
     tables: dict[str, Iterable[Sequence[Any]]] = {
-        "load-deflection": [["deflection_m", "load_N"], *curve],
+        "load-deflection": [["deflection_m", "load_N", "harmonics"], *np.column_stack([curve, harmonics])],
         "strain-cycle": strains,
     }
     if cords:

@@ -62,6 +62,8 @@ class Balance:
     #: (deflection, load), m and N, of the load steps, with the tolerance `ON_THE_WAY`; every solution starts a new
     #: list.
     path: list[tuple[float, float]] = field(default_factory=list, init=False, repr=False)
+    #: Highest harmonic in large motion of each load step of `path`.
+    path_harmonics: list[int] = field(default_factory=list, init=False, repr=False)
 
     @functools.cached_property
     def motion(self) -> LargeMotion:
@@ -141,7 +143,7 @@ class Balance:
             total = self._guess(load, harmonics)
             slope = load / total
         now, step = motion.free(harmonics, self._contact(harmonics), total), total
-        self.path[:] = [(0.0, 0.0)]
+        self.path[:], self.path_harmonics[:] = [(0.0, 0.0)], [harmonics]
         for _ in range(self.steps):
             left = total - now.deflection if load is None else (load - now.load) / slope
             if abs(left) <= (ROUNDING if load is None else NEAR) * total:
@@ -165,6 +167,7 @@ class Balance:
                 slope = max(steeper, 0.1 * slope)
             now, step = reached, 1.25 * abs(made)
             self.path.append((now.deflection, now.load))
+            self.path_harmonics.append(harmonics)
         raise self._no_balance_error(now, deflection, load, "")
 
     def _guess(self, load: float, harmonics: int) -> float:

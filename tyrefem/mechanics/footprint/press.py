@@ -54,6 +54,7 @@ class Pressed(Brief):
     tolerance : allowed change with the number of harmonics.
     path : (deflection, load), m and N, of the load steps in large motion; empty: linear about the inflated state.
     moduli : the secant moduli, if the study asks for them; ``study`` then has cards with these.
+    path_harmonics : highest harmonic of each load step of ``path``.
     """
 
     study: StudyData
@@ -64,6 +65,7 @@ class Pressed(Brief):
     tolerance: float = TOLERANCE
     path: tuple[tuple[float, float], ...] = ()
     moduli: SecantModuli | None = None
+    path_harmonics: tuple[int, ...] = ()
 
     def _title(self) -> str:
         return f"tyre of {self.study.name}"
@@ -136,8 +138,7 @@ class Pressed(Brief):
         """(n, 2) deflection, m, and load, N, from zero load, with the same number of harmonics as the footprint; in
         large motion the footprint after its load steps, whose few harmonics make the load up to a quarter too high."""
         if self.balanced:
-            before = [point for point in self.path if point[0] < 0.99 * self.footprint.deflection]
-            return np.array([*before, (self.footprint.deflection, self.footprint.load)])
+            return np.array([*(step[:2] for step in self._before), (self.footprint.deflection, self.footprint.load)])
         last = min(BEYOND * self.footprint.deflection, BEFORE_RIM * self.pressing.bottoming)
         deflections = np.linspace(0.0, last, count + 1)
         # The largest first: its grid of angles is used for the others.
@@ -145,6 +146,19 @@ class Pressed(Brief):
             self.pressing.at_deflection(float(point), self.footprint.harmonics).load for point in deflections[:0:-1]
         ]
         return np.column_stack([deflections, [0.0, *loads[::-1]]])
+
+    def curve_harmonics(self, curve: Array) -> Array:
+        """(n,) highest harmonic of each point of a `curve`; in large motion that of its load step, and at the last
+        point that of the footprint."""
+        if self.balanced:
+            return np.array([*(step[2] for step in self._before), self.footprint.harmonics])
+        return np.full(len(curve), self.footprint.harmonics)
+
+    @property
+    def _before(self) -> list[tuple[float, float, int]]:
+        """(deflection, load, highest harmonic), m and N, of the load steps short of the footprint."""
+        end = 0.99 * self.footprint.deflection
+        return [(*point, n) for point, n in zip(self.path, self.path_harmonics, strict=True) if point[0] < end]
 
     def summary(self) -> dict[str, Any]:
         """All results in SI as the keys state, with versions, mesh and tolerance."""
@@ -278,4 +292,6 @@ def press(
 
     balance = Balance(pressing)
     footprint = balance.solve(load=load, deflection=deflection, tolerance=tolerance)
-    return Pressed(study, mesh, tyre, pressing, footprint, tolerance, tuple(balance.path), moduli)
+    return Pressed(
+        study, mesh, tyre, pressing, footprint, tolerance, tuple(balance.path), moduli, tuple(balance.path_harmonics)
+    )
