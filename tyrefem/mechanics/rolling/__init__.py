@@ -1,0 +1,1 @@
+"""Steady rolling of a tyre, in Fourier harmonics round the wheel."""

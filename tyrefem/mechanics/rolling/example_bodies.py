@@ -1,0 +1,65 @@
+"""Bodies whose rolling contact is known in closed form: a half plane, bristles, a string on an elastic bed."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.mechanics.rolling.contact_body import COMPONENTS, NOWHERE, ContactBody
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+
+def line_upstream(count: int) -> Indices:
+    """(count,) point upstream of points in a line whose material enters at the last.
+
+    >>> line_upstream(3).tolist()
+    [1, 2, -1]
+    """
+    return np.append(np.arange(1, count), NOWHERE)
+
+
+def half_plane(count: int, step: float, modulus: float) -> ContactBody:
+    """Points ``step`` (m) apart on an incompressible elastic half plane, forces per metre of width.
+
+    A uniform traction q over a step moves the surface at x by -2 q/(pi E*) int ln|x - s| ds, alike along and across the
+    surface, which do not couple. ``modulus``: E* = E/(1 - nu^2), Pa. Lateral forces are left out: a line moves to
+    the side with the same compliance.
+    """
+    distance = step * np.abs(np.subtract.outer(np.arange(count), np.arange(count)))
+    before, after = distance - step / 2, distance + step / 2
+
+    def primitive(x: Array) -> Array:
+        return np.asarray(x * np.log(np.abs(x) / (count * step)) - x)
+
+    kernel = -2 / (np.pi * modulus * step) * (primitive(after) - primitive(before))
+    return ContactBody(_uncoupled(kernel, kernel), line_upstream(count))
+
+
+def bristles(count: int, normal: float, tangential: float) -> ContactBody:
+    """Separate bristles in a line, compliances m/N."""
+    unit = np.eye(count)
+    return ContactBody(_uncoupled(normal * unit, tangential * unit), line_upstream(count))
+
+
+def string(count: int, step: float, tension: float, bed: float, normal: float) -> ContactBody:
+    """An endless string under ``tension`` (N) on an elastic ``bed`` (N/m2), points ``step`` (m) apart; a normal
+    compliance of separate points, m/N.
+
+    A force F moves it by F exp(-|x|/sigma)/(2 bed sigma), sigma = sqrt(tension/bed).
+    """
+    length = np.sqrt(tension / bed)
+    distance = step * np.abs(np.subtract.outer(np.arange(count), np.arange(count)))
+    return ContactBody(
+        _uncoupled(normal * np.eye(count), np.exp(-distance / length) / (2 * bed * length)), line_upstream(count)
+    )
+
+
+def _uncoupled(normal: Array, tangential: Array) -> Array:
+    count = len(normal)
+    compliance = np.zeros((count, COMPONENTS, count, COMPONENTS))
+    compliance[:, 0, :, 0] = normal
+    for component in (1, 2):
+        compliance[:, component, :, component] = tangential
+    return compliance

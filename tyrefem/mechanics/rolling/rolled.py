@@ -1,0 +1,184 @@
+"""A rolling tyre: forces and moments, slip, friction power, and its maps over the footprint."""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.brief import Brief
+from tyrefem.mechanics.rolling.friction import OPEN, SLIP, FrictionForces
+from tyrefem.mechanics.rolling.rolling_grid import RollingGrid
+from tyrefem.mechanics.rolling.rolling_motion import RollingMotion
+
+Array = NDArray[np.float64]
+#: The wheel's torque of a force f at a place p of (x forward, y down, z left) is f . (TORQUE p), N m.
+TORQUE = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
+
+
+@dataclass(frozen=True, eq=False)
+class RolledTyre(Brief):
+    """A tyre in steady rolling. Made by `SteadyRolling.roll`.
+
+    Forces and moments are those of the road on the tyre in ISO 8855 axes (x forward, y left, z up) at the contact
+    centre, where the wheel's plane meets the road below the axle.
+
+    Parameters
+    ----------
+    grid : points that may touch. motion : of the wheel. axes : (k, 3, 3) of each point, away from the road, along it,
+        left. contact : forces, slips, states. friction : (k,) coefficient.
+    deflection : m. travel : m the wheel travels per radian of its turn. reach : of the free tyre towards the road, m.
+    """
+
+    grid: RollingGrid
+    motion: RollingMotion
+    axes: Array
+    contact: FrictionForces
+    friction: Array
+    deflection: float
+    travel: float
+    reach: float
+
+    def _facts(self) -> Mapping[str, Any]:
+        return {
+            "F_x, F_y, F_z": f"{self.force[0]:.5g}, {self.force[1]:.5g}, {self.force[2]:.5g} N",
+            "M_z": f"{self.moment[2]:.4g} N m",
+            "torque": f"{self.torque:.4g} N m",
+            "sliding": f"{100 * self.sliding_share:.3g} % of the load",
+            "friction power": f"{self.friction_power:.4g} W",
+        }
+
+    @property
+    def harmonics(self) -> int:
+        """Highest harmonic."""
+        return self.grid.harmonics
+
+    @property
+    def spin(self) -> float:
+        """Speed of rotation, rad/s."""
+        return self.motion.speed / self.travel
+
+    @property
+    def loaded_radius(self) -> float:
+        """Distance of the wheel's centre from the road, m."""
+        return self.reach - self.deflection
+
+    @functools.cached_property
+    def moved(self) -> Array:
+        """(k, 3) displacement (x forward, y down, z left), m."""
+        return np.asarray(np.einsum("kax,ka->kx", self.axes, self.contact.displacement))
+
+    @functools.cached_property
+    def _vectors(self) -> Array:
+        """(k, 3) forces (x forward, y down, z left), N."""
+        return np.asarray(np.einsum("kax,ka->kx", self.axes, self.contact.forces))
+
+    @functools.cached_property
+    def places(self) -> Array:
+        """(3, k) places of the points from the contact centre, m: x forward, y left, z up."""
+        camber = self.grid.road.camber
+        x, down, left = self.grid.road.in_road_axes((self.grid.free_places + self.moved).T)
+        return np.stack([x, left + self.loaded_radius * math.tan(camber), self.loaded_radius - down])
+
+    @functools.cached_property
+    def _iso(self) -> Array:
+        """(3, k) forces: x forward, y left, z up."""
+        x, down, left = self.grid.road.in_road_axes(self._vectors.T)
+        return np.stack([x, left, -down])
+
+    @functools.cached_property
+    def force(self) -> Array:
+        """(3,) F_x, F_y, F_z, N."""
+        return np.asarray(self._iso.sum(axis=1))
+
+    @functools.cached_property
+    def moment(self) -> Array:
+        """(3,) overturning M_x, rolling M_y, aligning M_z, N m."""
+        return np.asarray(np.cross(self.places.T, self._iso.T).sum(axis=0))
+
+    @functools.cached_property
+    def torque(self) -> float:
+        """Torque of the axle on the wheel, N m; positive drives, negative brakes."""
+        return float((self._vectors * ((self.grid.free_places + self.moved) @ TORQUE.T)).sum())
+
+    @property
+    def pneumatic_trail(self) -> float:
+        """-M_z/F_y, m: how far behind the contact centre the side force acts; nan without side force."""
+        return float(-self.moment[2] / self.force[1]) if self.force[1] else math.nan
+
+    @property
+    def sliding_share(self) -> float:
+        """Share of the normal force that is on sliding points."""
+        forces = self.contact.forces[:, 0]
+        return float(forces[self.contact.states == SLIP].sum() / forces.sum())
+
+    def _map(self, values: NDArray[Any]) -> NDArray[Any]:
+        return values.reshape(len(self.grid.angles), -1, *values.shape[1:])
+
+    @property
+    def pressure(self) -> Array:
+        """(n_angles, m) contact pressure, Pa."""
+        return self._map(self.contact.forces[:, 0] / self.grid.areas)
+
+    @property
+    def traction(self) -> Array:
+        """(n_angles, m, 2) of the road on the tread, forward and to the left, Pa."""
+        return self._map(self.contact.forces[:, 1:] / self.grid.areas[:, None])
+
+    @property
+    def sliding_velocity(self) -> Array:
+        """(n_angles, m, 2) of the tread over the road, forward and to the left, m/s; zero at open points."""
+        rate = self.spin / self.grid.step
+        return self._map(np.where((self.contact.states == OPEN)[:, None], 0.0, rate * self.contact.slips))
+
+    @property
+    def sliding_speed(self) -> Array:
+        """(n_angles, m) m/s."""
+        return np.asarray(np.linalg.norm(self.sliding_velocity, axis=-1))
+
+    @property
+    def states(self) -> NDArray[np.int8]:
+        """(n_angles, m) 0 open, 1 sticks, 2 slips."""
+        return self._map(self.contact.states)
+
+    @functools.cached_property
+    def power_map(self) -> Array:
+        """(n_angles, m) friction power, W: work of a step's mean force on the tread's motion relative to the road.
+
+        At the ends of the contact a step is partly open. There the work on the changing gap corrects that on the slip:
+        the elastic work of a revolution is zero only for their sum.
+        """
+        contact, upstream = self.contact, self.grid.upstream
+        before = np.where((upstream >= 0)[:, None], contact.forces[upstream], 0.0)
+        opened = np.where(upstream >= 0, contact.gaps - contact.gaps[upstream], 0.0)
+        relative = np.column_stack([opened, contact.slips])
+        work = -((contact.forces + before) / 2 * relative).sum(axis=1)
+        return self._map(work * self.spin / self.grid.step)
+
+    @property
+    def power_by_ring(self) -> Array:
+        """(m,) friction power of each point of the tread over the footprint, W."""
+        return np.asarray(self.power_map.sum(axis=0))
+
+    @property
+    def friction_power(self) -> float:
+        """Power that friction turns into heat, W."""
+        return float(self.power_map.sum())
+
+    @property
+    def lost_power(self) -> float:
+        """Power of the axle, W: torque times spin, less what the road takes away: -F . velocity of the road."""
+        x, _, left = self.grid.road.in_road_axes((self.grid.free_places + self.moved).T)
+        road = self.motion.speed * self.motion.road_per_travel(x, left)
+        taken = float((self.contact.forces[:, 1:] * road).sum())
+        return self.torque * self.spin + taken
+
+    @property
+    def balance(self) -> float:
+        """What the axle puts in less what friction takes out, over the latter."""
+        return (self.lost_power - self.friction_power) / self.friction_power if self.friction_power else 0.0

@@ -1,0 +1,159 @@
+"""Points of the rolling tread that may touch the road: angles times points of the whole tread."""
+
+from __future__ import annotations
+
+import functools
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.brief import Brief
+from tyrefem.mechanics.footprint.elements import COMPONENTS
+from tyrefem.mechanics.footprint.road import Road
+from tyrefem.mechanics.rolling.contact_body import NOWHERE
+from tyrefem.mechanics.rolling.tread_influence import TreadInfluence
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+#: Angles beyond the contact that may touch, on each side, of a new grid; and at most, of a grid that is kept.
+ANGLES_BEYOND, MOST_BEYOND = 3, 6
+
+
+@dataclass(frozen=True, eq=False)
+class RollingGrid(Brief):
+    """Angles j D, j = first .. last, D = pi/harmonics, times the m points of the tread; point k = (angle, point).
+
+    Axes (x forward, y down, z left) are the wheel's. Material runs in at the front (positive angles), so a point's
+    material was at the next larger angle a step before. The largest angle cannot touch.
+    """
+
+    influence: TreadInfluence
+    road: Road
+    harmonics: int
+    first: int
+    last: int
+
+    @property
+    def step(self) -> float:
+        """D, rad."""
+        return math.pi / self.harmonics
+
+    @functools.cached_property
+    def angles(self) -> Array:
+        """(n_angles,), rad."""
+        return np.asarray(self.step * np.arange(self.first, self.last + 1), dtype=float)
+
+    @functools.cached_property
+    def kernel(self) -> Array:
+        """`TreadInfluence.kernel` of these angles."""
+        return self.influence.kernel(self.harmonics, len(self.angles))
+
+    @property
+    def n_points(self) -> int:
+        """Number of points k."""
+        return len(self.angles) * len(self.influence.places[0])
+
+    @functools.cached_property
+    def upstream(self) -> Indices:
+        """(k,) point at which the material was a step before."""
+        across = len(self.influence.places[0])
+        before = np.arange(self.n_points) + across
+        before[-across:] = NOWHERE
+        return before
+
+    def around(self, closed: NDArray[np.bool_], beyond: int) -> RollingGrid:
+        """The grid itself, if it has ``beyond`` to `MOST_BEYOND` angles on both sides of the points ``closed`` (k,).
+        Otherwise a grid with `ANGLES_BEYOND` of them."""
+        touching = np.flatnonzero(closed.reshape(len(self.angles), -1).any(axis=1)) + self.first
+        low, high = (int(touching.min()), int(touching.max())) if len(touching) else (0, 0)
+        margins = low - self.first, self.last - high
+        if min(margins) >= beyond and max(margins) <= MOST_BEYOND:
+            return self
+        furthest = self.harmonics - 1
+        first, last = max(low - ANGLES_BEYOND, -furthest), min(high + ANGLES_BEYOND, furthest)
+        return RollingGrid(self.influence, self.road, self.harmonics, first, last)
+
+    @functools.cached_property
+    def areas(self) -> Array:
+        """(k,) tributary area of a point, m2."""
+        return np.tile(self.influence.lengths * self.influence.places[0] * self.step, len(self.angles))
+
+    @functools.cached_property
+    def wheel_axes(self) -> Array:
+        """(n_angles, 3, 3) unit vectors (x, y, z) of the components (r, z, t) at each angle, as rows."""
+        sin, cos = np.sin(self.angles), np.cos(self.angles)
+        axes = np.zeros((len(sin), COMPONENTS, 3))
+        axes[:, 0, 0], axes[:, 0, 1] = sin, cos
+        axes[:, 1, 2] = 1.0
+        axes[:, 2, 0], axes[:, 2, 1] = cos, -sin
+        return axes
+
+    @functools.cached_property
+    def free_places(self) -> Array:
+        """(k, 3) places (x, y, z) of the free tread, averaged with the hats by two points, m."""
+        r, z = self.influence.places
+        flat = np.cos(self.step / math.sqrt(6))
+        axes = self.wheel_axes[:, 0]
+        places = flat * axes[:, None, :] * r[:, None]
+        places[..., 2] = z
+        return np.asarray(places.reshape(-1, 3))
+
+    def gaps(self, moved: Array, distance: float) -> tuple[Array, Array]:
+        """Gaps (k,), m, averaged with the hats, and unit vectors (k, 3) into the road, for displacements (k, 3)."""
+        r, z = self.influence.places
+        free = []
+        offset = self.step / math.sqrt(6)
+        for shift in (offset, 0.0, -offset):
+            angle = np.repeat(self.angles + shift, len(r))
+            radius = np.tile(r, len(self.angles))
+            free.append(np.stack([radius * np.sin(angle), radius * np.cos(angle), np.tile(z, len(self.angles))]))
+        before_centre, centre, after_centre = (self.road.gaps(places, distance)[0] for places in free)
+        gaps, normals = self.road.gaps(free[1] + moved.T, distance)
+        return gaps + (before_centre + after_centre) / 2 - centre, normals.T
+
+    def road_axes(self, normals: Array) -> Array:
+        """(k, 3, 3) unit vectors (away from the road, along it, left) as rows in (x, y, z), for normals (k, 3)."""
+        left = np.array([0.0, -math.sin(self.road.camber), math.cos(self.road.camber)])
+        along = np.cross(normals, left)
+        return np.stack([-normals, along, np.broadcast_to(left, along.shape)], axis=1)
+
+    def along(self, axes: Array, vectors: Array) -> Array:
+        """(k, 3) components of vectors (k, 3) along axes (k, 3, 3)."""
+        return np.asarray(np.einsum("kax,kx->ka", axes, vectors))
+
+    def turns(self, axes: Array) -> Array | None:
+        """(k, 3, 3) turn from the axes upstream of a point to the axes of the point; None on a flat road."""
+        if math.isinf(self.road.drum_diameter):
+            return None
+        return np.asarray(axes @ axes[self.upstream].transpose(0, 2, 1))
+
+    def middles(self, moved: Array) -> tuple[Array, Array]:
+        """Places (k,) forward and to the left of the wheel's centre, m, between a point and the point upstream."""
+        x, _, left = self.road.in_road_axes((self.free_places + moved).T)
+        return (x + x[self.upstream]) / 2, (left + left[self.upstream]) / 2
+
+    def normal_compliance(self, normals: Array) -> Array:
+        """(k, k) displacement of a point along its normal (k, 3) per force along that of another, m/N."""
+        across, count = len(self.influence.places[0]), len(self.angles)
+        parts = np.einsum("jpx,jcx->jcp", normals.reshape(count, across, 3), self.wheel_axes)
+        compliance = np.empty((count, across, count, across))
+        for to in range(count):
+            for of in range(count):
+                block = self.kernel[count - 1 + to - of]
+                compliance[to, :, of] = np.einsum("ai,aibj,bj->ij", parts[to], block, parts[of], optimize=True)
+        return compliance.reshape(self.n_points, self.n_points)
+
+    def compliance(self, axes: Array) -> Array:
+        """(k, 3, k, 3) displacement of a point along its ``axes`` (k, 3, 3) per force along those of another, m/N."""
+        across, count = len(self.influence.places[0]), len(self.angles)
+        turn = axes.reshape(count, across, 3, 3) @ self.wheel_axes.transpose(0, 2, 1)[:, None]
+        compliance = np.empty((count, across, COMPONENTS, count, across, COMPONENTS))
+        for to in range(count):
+            for of in range(count):
+                # (i, j, 3, 3) of a pair of points.
+                block = self.kernel[count - 1 + to - of].transpose(1, 3, 0, 2)
+                turned = turn[to][:, None] @ block @ turn[of].transpose(0, 2, 1)[None]
+                compliance[to, :, :, of] = turned.transpose(0, 2, 1, 3)
+        return compliance.reshape(self.n_points, COMPONENTS, self.n_points, COMPONENTS)

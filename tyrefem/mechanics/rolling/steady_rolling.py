@@ -1,0 +1,204 @@
+"""A tyre that rolls steadily on a road with friction, in small motion about the inflated tyre."""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.brief import Brief
+from tyrefem.errors import InputError
+from tyrefem.mechanics.footprint.complementarity import contact_forces
+from tyrefem.mechanics.footprint.contact import Pressing
+from tyrefem.mechanics.footprint.road import Road
+from tyrefem.mechanics.rolling.contact_body import ContactBody
+from tyrefem.mechanics.rolling.friction import Control, RollingContact
+from tyrefem.mechanics.rolling.rolled import TORQUE, RolledTyre
+from tyrefem.mechanics.rolling.rolling_grid import ANGLES_BEYOND, RollingGrid
+from tyrefem.mechanics.rolling.rolling_motion import RollingMotion
+from tyrefem.mechanics.rolling.tread_influence import TreadInfluence
+
+Array = NDArray[np.float64]
+#: mu of sliding speed (m/s) and contact pressure (Pa), arrays alike.
+FrictionLaw = Callable[[Array, Array], Array]
+#: Relative change of the forces at which geometry and friction have settled; rounds before giving up.
+SETTLED, ROUNDS = 1e-7, 60
+
+
+@dataclass(frozen=True)
+class RollingLoads:
+    """What is given of a rolling wheel.
+
+    Parameters
+    ----------
+    load : N; or deflection : m.
+    travel : m the wheel travels per radian of its turn; or torque : N m about the axle, positive drives; or
+        force : N of the road on the tyre, forward.
+    """
+
+    load: float | None = None
+    deflection: float | None = None
+    travel: float | None = None
+    torque: float | None = None
+    force: float | None = None
+
+    def __post_init__(self) -> None:
+        if (self.load is None) == (self.deflection is None):
+            raise InputError("give exactly one of 'load' and 'deflection'")
+        if sum(value is not None for value in (self.travel, self.torque, self.force)) != 1:
+            raise InputError("give exactly one of 'travel', 'torque' and 'force'")
+
+
+@dataclass(frozen=True, eq=False)
+class SteadyRolling(Brief):
+    """A tyre with friction between tread and road.
+
+    Parameters
+    ----------
+    pressing : the inflated tyre on its road, without camber if it is a half section.
+    camber : rad; positive: the side z > 0 moves down.
+    friction : coefficient, or its law of sliding speed and pressure.
+    """
+
+    pressing: Pressing
+    camber: float = 0.0
+    friction: float | FrictionLaw = 1.0
+    influence: TreadInfluence | None = None
+
+    def __post_init__(self) -> None:
+        if isinstance(self.friction, int | float) and not 0 <= self.friction < math.inf:
+            raise InputError(f"must be at least 0, not {self.friction:g}", field="friction")
+
+    @functools.cached_property
+    def road(self) -> Road:
+        """The road, leaning against the wheel."""
+        return Road(self.pressing.road.drum_diameter, self.camber)
+
+    @functools.cached_property
+    def points(self) -> TreadInfluence:
+        """Points of the whole tread and their compliance."""
+        return TreadInfluence(self.pressing.tread) if self.influence is None else self.influence
+
+    @functools.cached_property
+    def reach(self) -> float:
+        """Reach of the free tyre towards the road, m."""
+        return self.road.lowest(self.points.places)
+
+    def roll(
+        self,
+        motion: RollingMotion,
+        given: RollingLoads,
+        harmonics: int,
+        start: RolledTyre | None = None,
+        guess: tuple[float, float] | None = None,
+    ) -> RolledTyre:
+        """The rolling tyre with harmonics up to a number.
+
+        On a flat road with a constant coefficient of friction one contact problem is solved. On a drum, on a curved
+        path, or with a law of friction, geometry and coefficient follow the last solution until the forces settle.
+
+        Parameters
+        ----------
+        start : a similar rolling tyre with as many harmonics, where the search begins.
+        guess : deflection, m, and travel per radian, m, where it begins otherwise.
+
+        Raises
+        ------
+        InputError : a deflection beyond the rim, or a load, torque or force that the contact cannot carry.
+        """  # fmt: skip
+        if guess is None:
+            guess = (0.1 * self.pressing.bottoming, self.reach) if start is None else (start.deflection, start.travel)
+        guess = (
+            guess[0] if given.deflection is None else given.deflection,
+            guess[1] if given.travel is None else given.travel,
+        )
+        self.pressing.check(guess[0])
+        grid = self._near(harmonics, guess[0]) if start is None else start.grid
+        last, before = start, None
+        for _ in range(ROUNDS):
+            rolled = self._solved(grid, motion, given, guess, last)
+            wider = grid.around(rolled.contact.forces[:, 0] > 0, 1)
+            guess, last = (rolled.deflection, rolled.travel), rolled
+            if wider is not grid:
+                grid, before = wider, None
+                last = None
+                continue
+            forces = rolled.contact.forces
+            change = math.inf if before is None else float(np.abs(forces - before).max())
+            if self._closed(motion) or change <= SETTLED * float(np.abs(forces).max()):
+                self.pressing.check(rolled.deflection)
+                return rolled
+            before = forces
+        raise InputError(f"forces, geometry and friction of the rolling contact do not settle in {ROUNDS} rounds")
+
+    def _closed(self, motion: RollingMotion) -> bool:
+        """True if a contact problem does not depend on its solution."""
+        return math.isinf(self.road.drum_diameter) and not motion.turn_slip and not callable(self.friction)
+
+    def _near(self, harmonics: int, deflection: float) -> RollingGrid:
+        """The angles of the frictionless footprint, and `ANGLES_BEYOND` on both sides."""
+        around = 1.0 / (1.0 + 2 * self.reach / self.road.drum_diameter)
+        half_angle = math.acos(max(1 - deflection * around / self.reach, -0.5))
+        side = min(math.ceil(1.1 * half_angle / math.pi * harmonics) + 1, harmonics - 1)
+        grid = RollingGrid(self.points, self.road, harmonics, -side, side)
+        gaps, normals = grid.gaps(np.zeros((grid.n_points, 3)), self.reach - deflection)
+        _, closed = contact_forces(grid.normal_compliance(normals), gaps)
+        if not closed.any():
+            raise InputError("the tyre does not touch the road", field="deflection")
+        return grid.around(closed, ANGLES_BEYOND)
+
+    def _solved(
+        self,
+        grid: RollingGrid,
+        motion: RollingMotion,
+        given: RollingLoads,
+        guess: tuple[float, float],
+        last: RolledTyre | None,
+    ) -> RolledTyre:
+        """Contact with geometry and friction of the ``last`` solution."""
+        moved = np.zeros((grid.n_points, 3)) if last is None else last.moved
+        gaps, normals = grid.gaps(moved, self.reach - (given.deflection or 0.0))
+        axes = grid.road_axes(normals)
+        gaps = gaps + np.einsum("kx,kx->k", normals, moved)
+        body = ContactBody(grid.compliance(axes), grid.upstream, grid.turns(axes))
+        free = grid.free_places
+        rigid = body.change(grid.along(axes, free))
+        per_radian = -grid.step * motion.road_per_travel(*grid.middles(moved))
+        per_radian[~body.may_touch] = 0.0
+        if given.travel is not None:
+            rigid = rigid + given.travel * per_radian
+        friction = np.full(grid.n_points, self.friction) if not callable(self.friction) else self._law(grid, last)
+        controls, values = [], []
+        none, flat = np.zeros(grid.n_points), np.zeros((grid.n_points, 2))
+        if given.load is not None:
+            down = self.road.normal
+            controls.append(Control(-normals @ down, flat, -axes @ down, given.load))
+            values.append(guess[0])
+        if given.force is not None:
+            controls.append(Control(none, per_radian, axes[:, :, 0], given.force))
+        if given.torque is not None:
+            levers = axes @ TORQUE @ axes.transpose(0, 2, 1)
+            arms = grid.along(axes, free @ TORQUE.T)
+            controls.append(Control(none, per_radian, arms, given.torque, levers))
+        if given.travel is None:
+            values.append(guess[1])
+        problem = RollingContact(body, gaps, rigid, friction, controls)
+        contact = problem.solve(None if last is None else last.contact, values)
+        numbers = list(contact.controls)
+        deflection = given.deflection if given.load is None else numbers.pop(0)
+        travel = given.travel if given.travel is not None else numbers.pop(0)
+        assert deflection is not None
+        assert travel is not None
+        return RolledTyre(grid, motion, axes, contact, friction, deflection, travel, self.reach)
+
+    def _law(self, grid: RollingGrid, last: RolledTyre | None) -> Array:
+        """(k,) coefficient of friction at the sliding speed and pressure of the last solution."""
+        assert callable(self.friction)
+        if last is None:
+            zero = np.zeros(grid.n_points)
+            return np.asarray(self.friction(zero, zero), dtype=float)
+        return np.asarray(self.friction(last.sliding_speed.ravel(), last.pressure.ravel()), dtype=float)
