@@ -65,6 +65,16 @@ CORD_DIAMETER = Plausible(5e-5, 5e-3, "m", "one filament to the wires of a large
 EXPANSION = Plausible(
     5e-6, 4e-4, "1/K", "steel 1.2e-5, compounds 1.6e-4 to 2.4e-4, linear; handbook values from memory"
 )
+TEARING_ENERGY = Plausible(
+    100.0, 2e5, "J/m**2", "gum 1 to 10, filled natural rubber 5 to 50 kJ/m2: Lake; Mars & Fatemi 2002, from memory"
+)
+GROWTH_RATE = Plausible(
+    1e-8,
+    1e-1,
+    "m",
+    "1 um to 1 mm a cycle near the tearing energy; Lake & Lindley, from memory; 100 times more either way",
+)
+CRACK = Plausible(1e-6, 2e-2, "m", "flaws of 20 to 50 um (Lake, Mars, from memory) to visible cracks: an estimate")
 EMISSIVITY = Plausible(
     0.5, 1.0, "1", "hard rubber 0.94, soft grey rubber 0.89: Testo's table of emissivities; paint 0.9 to 0.96"
 )

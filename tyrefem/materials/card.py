@@ -25,6 +25,7 @@ from tyrefem.cards.plausible import (
 )
 from tyrefem.errors import InputError, InputWarning
 from tyrefem.materials.elasticity import Cords, Elasticity
+from tyrefem.materials.fatigue import Fatigue
 from tyrefem.materials.loss_frequency import LossFrequency, loss_over_frequency
 from tyrefem.materials.loss_tangent import Loss
 from tyrefem.materials.properties import PropertyTable, Softening, Sourced, columns
@@ -282,6 +283,7 @@ class MaterialCard(Card):
     softening: Softening | None = None
     strain_dependence: StrainDependence | None = None
     expansion: ThermalExpansion | None = None
+    fatigue: Fatigue | None = None
 
     @property
     def softens(self) -> bool:

@@ -1,0 +1,156 @@
+"""Life of shipped tyres on coarse meshes: temperature, Miner's sum, mean strain, what is left out, refusals."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import tyrefem
+from tyrefem.errors import InputError
+from tyrefem.fatigue.life import Life, check, life
+from tyrefem.fatigue.matrix_cycle import STEPS, MatrixCycle
+from tyrefem.fatigue.places import APART, first_places
+from tyrefem.fatigue.sensitivity import changed
+from tyrefem.mechanics.cycle_schedule import cycle_schedule
+
+COARSE = {"mesh.size": "14 mm", "mechanics.strain": "fem", "mechanics.motion": "linear", "drive.duration": "60 s"}
+
+
+def tyre(**changes: Any) -> tyrefem.api.Study:
+    return tyrefem.study("nasa-22x5.5-8pr", {**COARSE, **{key.replace("__", "."): v for key, v in changes.items()}})
+
+
+@pytest.fixture(scope="module")
+def at_60() -> Life:
+    return life(tyre(), temperature=60.0)
+
+
+def test_the_bead_has_no_table_and_is_left_out(at_60: Life) -> None:
+    assert at_60.left_out == ("bead",)
+    assert set(at_60.regions) == {"carcass", "tread", "sidewall"}
+    assert np.isnan(at_60.km[at_60.members("bead")]).all()
+    assert np.isfinite(at_60.km[at_60.members("carcass")]).all()
+
+
+def test_normals_are_unit_vectors_and_energies_are_ordered(at_60: Life) -> None:
+    inside = np.isfinite(at_60.km)
+    np.testing.assert_allclose(np.linalg.norm(at_60.normals[inside], axis=-1), 1.0, rtol=1e-12)
+    assert (at_60.peak[inside] >= at_60.valley[inside]).all()
+    np.testing.assert_allclose(at_60.shares[:, inside], 1.0, rtol=1e-12)
+
+
+def test_warmer_rubber_lasts_shorter_by_its_temperature_factor(at_60: Life) -> None:
+    hot = life(tyre(), temperature=110.0)
+    inside = np.isfinite(hot.km) & (hot.km < 1e11)
+    rate = at_60.study.materials["carcass"].fatigue.temperature_rate  # type: ignore[union-attr]
+    np.testing.assert_allclose(hot.km[inside] / at_60.km[inside], np.exp(-50 * rate), rtol=1e-9)
+    np.testing.assert_allclose(hot.temperatures[inside], 110.0)
+
+
+def test_distance_does_not_depend_on_speed_or_duration_at_a_given_temperature(at_60: Life) -> None:
+    other = life(tyre(drive__speed="35 mph", drive__duration="20 s"), temperature=60.0)
+    inside = np.isfinite(at_60.km)
+    np.testing.assert_allclose(other.km[inside], at_60.km[inside], rtol=1e-9)
+
+
+def test_miners_sum_of_two_loads() -> None:
+    """1/L of a drive of two phases is the mean of both 1/L by distance, on the plane of the worse sum."""
+    light, heavy = ({"name": name, "duration": "60 s", "load": load} for name, load in (("a", "6 kN"), ("b", "9 kN")))
+
+    def of(*phases: dict[str, str]) -> Life:
+        study = tyre()
+        drive = {key: value for key, value in study.data["drive"].items() if key not in ("load", "duration")}
+        return life(study.replace({"drive": {**drive, "phases": list(phases)}}), temperature=60.0)
+
+    both, first, second = of(light, heavy), of(light), of(heavy)
+    inside = np.isfinite(both.km)
+    rates = (1 / first.km[inside] + 1 / second.km[inside]) / 2
+    assert both.distance == pytest.approx(first.distance + second.distance)
+    # Each alone chooses its plane, so that the sum of both is an upper bound; it is close where these agree.
+    together = 1 / both.km[inside]
+    print(np.sort(together / rates)[-5:], np.sort(together / rates)[:5], np.median(together / rates))
+    assert (together <= 1.01 * rates).all()
+    assert np.median(together / rates) > 0.95
+    np.testing.assert_allclose(both.shares[:, inside].sum(axis=0), 1.0, rtol=1e-9)
+
+
+def test_the_path_begins_at_rest_and_closes() -> None:
+    cycle: Any = cycle_schedule(tyre()).cycles[0][0]
+    matrix = MatrixCycle(cycle)
+    members = np.asarray(cycle.tyre.mesh.subdomains["carcass"])
+    energies = matrix.energies("carcass", members)
+    assert np.abs(energies.strain[:, 0]).max() == 0.0
+    assert np.abs(energies.stress[:, 0]).max() < 1e-6
+    np.testing.assert_allclose(energies.strain[:, STEPS], energies.strain[:, -1], atol=1e-6)
+    # Opposite the footprint the tyre has nearly its inflated strain, which is the mean of the cycle.
+    f = np.moveaxis(cycle.tyre.deformation[:, :, members], (0, 1), (-2, -1))
+    hoop = np.log(f[..., 2, 2]).ravel()
+    assert np.abs(energies.strain[:, STEPS, 2] - hoop).max() < 0.1 * np.abs(energies.strain[..., 2]).max()
+
+
+def test_stress_of_the_rubber_is_that_of_its_compound() -> None:
+    """Deviator: that of the neo-Hookean law, 2 G e for small strain, whatever the cords bear."""
+    cycle: Any = cycle_schedule(tyre()).cycles[0][0]
+    members = np.asarray(cycle.tyre.mesh.subdomains["carcass"])
+    energies = MatrixCycle(cycle).energies("carcass", members)
+    modulus = cycle.tyre.body.parts["carcass"].compound.shear_modulus
+    deviator, strain = energies.stress.copy(), energies.strain.copy()
+    for values in (deviator, strain):
+        values[..., :3] -= values[..., :3].mean(axis=-1, keepdims=True)
+    small = np.abs(energies.strain).max(axis=-1) < 0.02
+    assert small.any()
+    np.testing.assert_allclose(deviator[small], 2 * modulus * strain[small], atol=0.05 * 2 * modulus * 0.02)
+
+
+def test_temperatures_of_the_run_are_used() -> None:
+    study = tyre()
+    result = study.run()
+    course, plateau = (life(study, result=result, plateau=late) for late in (False, True))
+    inside = np.isfinite(course.km)
+    assert (course.temperatures[inside] > 24.9).all()
+    assert course.temperatures[inside].max() < result.peaks["tyre"].temperature
+    assert plateau.temperatures[inside].mean() > course.temperatures[inside].mean() + 1
+    hottest = int(np.nanargmax(plateau.temperatures.max(axis=1)))
+    assert plateau.element_km[hottest] < course.element_km[hottest]
+
+
+def test_places_are_sorted_and_apart(at_60: Life) -> None:
+    places = first_places(at_60)
+    assert len(places) == 10
+    lives = [place.km for place in places]
+    assert lives == sorted(lives)
+    assert lives[0] == at_60.shortest
+    for number, place in enumerate(places):
+        assert 0 <= place.plane_from_circumference <= 90
+        assert place.region in place.reason
+        for other in places[:number]:
+            assert place.region != other.region or np.hypot(place.r - other.r, place.z - other.z) >= APART
+
+
+def test_a_change_reaches_every_phase() -> None:
+    study = tyrefem.study("nasa-taxi-takeoff")
+    changes = changed(study, "speed")
+    assert changes["drive.phases.0.speed"] == "22 mph"
+    assert changes["drive.phases.2.speed"] == {"from": "0 mph", "to": "176 mph"}
+    assert changed(study, "pressure") == {"drive.pressure": "234.9 psi"}
+    assert changed(study, "ambient") == {"drive.ambient": "35 degC", "drive.phases.3.ambient": "25 degC"}
+
+
+@pytest.mark.parametrize("law", ["arcs", "barrel"])
+def test_a_law_without_strains_over_a_revolution_is_refused(law: str) -> None:
+    with pytest.raises(InputError, match=r"mechanics\.strain = ") as caught:
+        check(tyre(mechanics__strain=law))
+    assert caught.value.field == "mechanics.strain"
+
+
+def test_no_card_with_fatigue_is_refused() -> None:
+    study = tyre().replace({f"materials.{region}": "nasa-bead" for region in ("carcass", "tread", "sidewall", "bead")})
+    with pytest.raises(InputError, match=r"\[fatigue\]"):
+        check(study)
+
+
+def test_a_tyre_at_rest_has_no_life() -> None:
+    with pytest.raises(InputError, match="never rolls"):
+        life(tyre(drive__speed="0 mph"), temperature=60.0)

@@ -1,0 +1,93 @@
+"""How speed, load, pressure and ambient temperature shift the shortest life."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from tyrefem.fatigue.life import Life, life
+from tyrefem.inputs.changes import scaled
+from tyrefem.quantity import parse
+
+if TYPE_CHECKING:
+    from tyrefem.inputs.study import StudyData
+
+#: Name -> what changes, and its keys of the drive.
+SHIFTS: dict[str, tuple[str, tuple[str, ...]]] = {
+    "speed": ("speed + 10 %", ("speed",)),
+    "load": ("load + 10 %", ("load", "deflection")),
+    "pressure": ("pressure - 10 %", ("pressure",)),
+    "ambient": ("ambient + 10 K", ("ambient",)),
+}
+#: Factors of numbers; the ambient's step, K.
+FACTORS = {"speed": 1.1, "load": 1.1, "pressure": 0.9}
+WARMER = 10.0
+#: Where a drive does not give the ambient temperature.
+AMBIENT = "25 degC"
+
+
+@dataclass(frozen=True)
+class LifeShift:
+    """The shortest life after a change of the drive: km, its share of the life before, and region of the place."""
+
+    change: str
+    km: float
+    ratio: float
+    region: str
+    temperature: float
+
+
+def shifts(
+    before: Life, which: tuple[str, ...] = tuple(SHIFTS), progress: Callable[[float], None] | None = None
+) -> tuple[LifeShift, ...]:
+    """The shortest life of the study under each change of `SHIFTS` alone, all else as written.
+
+    Without a run (a life at a given temperature) the ambient's step is added to that temperature, and speed changes
+    nothing but is told.
+    """
+    made = []
+    for name in which:
+        study = before.study.replace(changed(before.study, name))
+        temperature = before.temperature
+        if temperature is not None and name == "ambient":
+            temperature += WARMER
+        after = life(study, temperature=temperature, plateau=before.plateau, progress=progress)
+        element = after.first
+        point = int(after.typical[element])
+        made.append(
+            LifeShift(
+                SHIFTS[name][0], after.shortest, after.shortest / before.shortest,
+                after.rings.region_of(element), float(after.temperatures[element, point]),
+            )
+        )  # fmt: skip
+    return tuple(made)
+
+
+def changed(study: StudyData, name: str) -> dict[str, Any]:
+    """Dotted name -> value of a change, in the drive and in every phase that gives the number itself.
+
+    >>> from tyrefem import study
+    >>> changed(study("nasa-22x5.5-8pr"), "speed")
+    {'drive.speed': '22 mph'}
+    """
+    drive: Mapping[str, Any] = study.data["drive"]
+    tables = [("drive", drive)]
+    tables += [(f"drive.phases.{number}", phase) for number, phase in enumerate(drive.get("phases", ()))]
+    changes = {
+        f"{where}.{key}": _moved(table[key], name)
+        for where, table in tables
+        for key in SHIFTS[name][1]
+        if isinstance(table, Mapping) and key in table
+    }
+    if name == "ambient" and "ambient" not in drive:
+        changes["drive.ambient"] = _moved(AMBIENT, name)
+    return changes
+
+
+def _moved(value: Any, name: str) -> Any:
+    if isinstance(value, Mapping):
+        return {key: _moved(end, name) for key, end in value.items()}
+    if name == "ambient":
+        return f"{parse(value, 'degC') + WARMER:.9g} degC"
+    return scaled(value, FACTORS[name], 9)
