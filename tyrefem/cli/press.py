@@ -64,6 +64,16 @@ def press(
         bool,
         typer.Option("--balanced", hidden=True, help="Older spelling of --motion large."),
     ] = False,
+    critical_speed: Annotated[
+        bool,
+        typer.Option(
+            "--critical-speed",
+            help="Instead: the speed at which a wave stands still. --pressure, --temperature may list: '2 bar, 3 bar'.",
+        ),
+    ] = False,
+    temperature: Annotated[
+        str | None, typer.Option(help="With --critical-speed: temperatures of the moduli, e.g. '25 degC, 80 degC'.")
+    ] = None,
     pictures: Annotated[bool, typer.Option(help="Draw the PNG pictures.")] = True,
     vtk: Annotated[bool, typer.Option(help="Write the whole deformed tyre, tyre.vtu.")] = True,
     out: Annotated[Path | None, typer.Option("--out", help="Folder; default: results/STUDY-press.")] = None,
@@ -75,11 +85,24 @@ def press(
 ) -> None:
     """Inflate the tyre by finite elements and press it on the road; default values are of the drive's first phase."""
     from tyrefem.api import study as load_study
+    from tyrefem.cli.critical_speed import print_critical_speeds
     from tyrefem.mechanics.footprint.press import NEEDS
     from tyrefem.mechanics.footprint.press import press as pressed_by
     from tyrefem.reports.press import FILES, write_files
     from tyrefem.reports.press_places import cycle_places, read_place
 
+    if critical_speed:
+        others = {"--load": load, "--deflection": deflection, "--drum": drum, "--camber": camber, "--motion": motion}
+        refused = [option for option, text in others.items() if text is not None] + ["--at"] * bool(at)
+        if refused:
+            raise InputError("no road acts on critical speeds; leave it out with --critical-speed", field=refused[0])
+        loaded = load_study(study, settings(changes), case)
+        print_critical_speeds(
+            loaded, pressure, temperature, out, force=force, quiet=quiet, as_json=as_json, pictures=pictures
+        )
+        return
+    if temperature is not None:
+        raise InputError("is for --critical-speed; a footprint has its cards' moduli", field="--temperature")
     texts = {"pressure": pressure, "load": load, "deflection": deflection, "drum_diameter": drum, "camber": camber}
     given = {name: _read(name, text) for name, text in texts.items() if text is not None}
     chosen = _motion(motion, balanced=balanced)

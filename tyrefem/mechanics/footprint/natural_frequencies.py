@@ -217,12 +217,9 @@ def dynamic_state(tyre: Inflation, stiffening: Mapping[str, float]) -> Prestress
 def densities(study: StudyData, tyre: Inflation) -> Array:
     """(n_elements, n_points) kg/m3 of the inflated volume: the cards' at the drive's initial temperature over det F."""
     from tyrefem.mechanics.solid.compounds import determinant
+    from tyrefem.mechanics.solid.tyre_body import reference_density
 
-    density = np.zeros(tyre.body.rings.weights.shape)
-    for region in tyre.body.parts:
-        members = tyre.body.mesh.subdomains[region]
-        density[members] = study.materials[region].density.at(study.card.drive.initial)
-    return np.asarray(density / determinant(tyre.deformation))
+    return np.asarray(reference_density(study, tyre.body) / determinant(tyre.deformation))
 
 
 def belt_elements(tyre: Inflation) -> Indices:

@@ -22,6 +22,7 @@ from tyrefem.mechanics.solid.parts import RegionMaterial
 from tyrefem.mechanics.solid.rim import Flange
 
 if TYPE_CHECKING:
+    from tyrefem.mechanics.solid.centrifugal import Centrifugal
     from tyrefem.mechanics.solid.finite_law import FiniteLaw
 
 Array = NDArray[np.float64]
@@ -81,6 +82,7 @@ class Body(Brief):
     held : boundary -> fixed components: ``"rz"``, ``"r"`` or ``"z"``.
     pressurised : boundaries under the following pressure.
     flanges : rigid rings on which the body may lie.
+    centrifugal : load of a spinning body; None: it does not spin.
 
     Raises
     ------
@@ -92,6 +94,7 @@ class Body(Brief):
     held: Mapping[str, str]
     pressurised: str = "contained_air"
     flanges: tuple[Flange, ...] = ()
+    centrifugal: Centrifugal | None = None
 
     def __post_init__(self) -> None:
         regions = self.mesh.subdomains or {}
@@ -186,7 +189,7 @@ class Body(Brief):
     # -- forces and stiffness ----------------------------------------------------------------------------------------
 
     def residual(self, displacement: Array, pressure: float) -> Array:
-        """(2 n_nodes,) internal forces minus those of ``pressure`` (Pa) and of the flanges, N per radian."""
+        """(2 n_nodes,) internal forces minus those of ``pressure`` (Pa), flanges and spin, N per radian."""
         f = self.deformation(displacement)
         stress, _, _ = self._stresses(f)
         strains, _ = self._strains(displacement, f)
@@ -195,6 +198,8 @@ class Body(Brief):
         np.add.at(forces, self._dofs, local)
         for flange in self.flanges:
             forces -= flange.force(self.rings.nodes + displacement)
+        if self.centrifugal is not None:
+            forces -= self.centrifugal.force(self.rings.nodes + displacement)
         return forces - pressure * self.load(displacement)
 
     def load(self, displacement: Array) -> Array:
@@ -224,6 +229,8 @@ class Body(Brief):
         data = np.concatenate([matrix.ravel(), follower.ravel()])
         n = 2 * self.rings.n_nodes
         assembled = sp.coo_matrix((data, (rows, columns)), shape=(n, n)).tocsc()
+        if self.centrifugal is not None:
+            assembled = assembled - self.centrifugal.stiffness
         return assembled + self._support(displacement, 2) if self.flanges else assembled
 
     def _support(self, displacement: Array, components: int) -> Any:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,7 +12,9 @@ from numpy.typing import NDArray
 from tyrefem.brief import Brief
 from tyrefem.errors import InputError
 from tyrefem.mechanics.solid.body import Body, Prestressed
-from tyrefem.mechanics.solid.newton import Equilibrium, NewtonChoice, equilibrium
+from tyrefem.mechanics.solid.centrifugal import Centrifugal
+from tyrefem.mechanics.solid.compounds import determinant
+from tyrefem.mechanics.solid.newton import Equilibrium, NewtonChoice, equilibrium, spun_equilibrium
 
 if TYPE_CHECKING:
     from tyrefem.geometry.meshing.mesh import TyreMesh
@@ -68,6 +70,21 @@ class Inflation(Brief):
     def state(self) -> Prestressed:
         """The inflated state as the start of a small further motion."""
         return self.body.state(self.displacement, self.pressure)
+
+    @property
+    def angular_speed(self) -> float:
+        """W of the spinning tyre, rad/s; zero at rest."""
+        return 0.0 if self.body.centrifugal is None else self.body.centrifugal.angular_speed
+
+    @functools.cached_property
+    def rolling_state(self) -> Prestressed:
+        """`state` with the inertia of steady motions through which the tyre turns (`solid.spin.rolled`)."""
+        spin = self.body.centrifugal
+        if spin is None:
+            return self.state
+        from tyrefem.mechanics.solid.spin import rolled
+
+        return rolled(self.state, spin.density / determinant(self.deformation), spin.angular_speed)
 
     @property
     def mesh(self) -> Any:
@@ -140,8 +157,9 @@ def inflate(
     mesh: TyreMesh | None = None,
     choice: NewtonChoice | None = None,
     temperature: Any = None,
+    angular_speed: float = 0.0,
 ) -> Inflation:
-    """Inflate a study's tyre.
+    """Inflate a study's tyre, and let it spin.
 
     Parameters
     ----------
@@ -149,6 +167,7 @@ def inflate(
     pressure : Pa above the ambient; by default that of the drive's first phase.
     mesh : a mesh of the study's section in quadrilaterals; by default that of the study.
     temperature : degC, as for `tyrefem.mechanics.solid.thermal.warm`; by default without thermal expansion.
+    angular_speed : W, rad/s; the centrifugal load is W^2 times mass times radius.
 
     Raises
     ------
@@ -161,20 +180,25 @@ def inflate(
     >>> 0 < inflated.radius_growth < 0.02
     True
     """
-    from tyrefem.mechanics.solid.tyre_body import tyre_body
+    from tyrefem.mechanics.solid.tyre_body import reference_density, tyre_body
 
     if pressure is None:
         pressure = float(study.card.drive.phases[0].pressure.start)
     if not (np.isfinite(pressure) and pressure >= 0):
         raise InputError(f"must be a pressure of 0 Pa or more, not {pressure:g}", field="pressure")
     body = tyre_body(study, mesh)
+    spin = Centrifugal(body.rings, reference_density(study, body), angular_speed) if angular_speed else None
     try:
         if temperature is None:
-            return Inflation(body, equilibrium(body, pressure, choice), study.section.half)
+            still = equilibrium(body, pressure, choice)
+            spinning = replace(body, centrifugal=spin)
+            return Inflation(spinning, spun_equilibrium(spinning, still, choice), study.section.half)
         from tyrefem.mechanics.solid import thermal
 
         warmed = thermal.warm(body, temperature, thermal.expansions(study))
         state = thermal.thermal_equilibrium(warmed, equilibrium(body, pressure, choice))
+        warmed = replace(warmed, centrifugal=spin)
+        state = spun_equilibrium(warmed, state, choice)
     except InputError as error:
         raise error if error.file else InputError(error.message, field=error.field, file=study.file) from None
     return Inflation(warmed, state, study.section.half)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -99,6 +99,38 @@ def equilibrium(body: Body, pressure: float, choice: NewtonChoice | None = None)
     return Equilibrium(now, pressure, tuple(steps), tuple(residuals))
 
 
+def spun_equilibrium(body: Body, still: Equilibrium, choice: NewtonChoice | None = None) -> Equilibrium:
+    """The equilibrium of a body with its centrifugal load, reached in steps from the one without.
+
+    Raises
+    ------
+    InputError : no equilibrium; the message gives the share of the load, the place (r, z) and its region.
+    """
+    choice = choice or NewtonChoice()
+    if body.centrifugal is None:
+        return still
+    now, reached, step = still.displacement, 0.0, 1.0
+    steps, residuals = list(still.steps), list(still.residuals)
+    while reached < 1:
+        aim = min(1.0, reached + step)
+        part = replace(body, centrifugal=body.centrifugal.at(aim))
+        try:
+            now, history = _newton(part, now, still.pressure, choice)
+        except _StuckError as stuck:
+            step = (aim - reached) / 2
+            if step < choice.smallest_step:
+                raise InputError(
+                    f"no equilibrium beyond {reached:.1%} of the centrifugal load at "
+                    f"{body.centrifugal.angular_speed:.4g} rad/s: {stuck}",
+                    field="speed",
+                ) from None
+            continue
+        reached = aim
+        steps.append(aim)
+        residuals.append(history)
+    return Equilibrium(now, still.pressure, tuple(steps), tuple(residuals))
+
+
 def _newton(body: Body, start: Array, pressure: float, choice: NewtonChoice) -> tuple[Array, tuple[float, ...]]:
     from scipy.sparse.linalg import splu
 
@@ -106,6 +138,8 @@ def _newton(body: Body, start: Array, pressure: float, choice: NewtonChoice) -> 
     if not _possible(body, now):
         raise _StuckError(_folded(body, now))
     size = abs(pressure) * float(np.linalg.norm(body.load(now)[free]))
+    if body.centrifugal is not None:
+        size += float(np.linalg.norm(body.centrifugal.force(body.rings.nodes + now)[free]))
     residual = body.residual(now, pressure)
     history = [float(np.linalg.norm(residual[free])) / size]
     while history[-1] > choice.tolerance:

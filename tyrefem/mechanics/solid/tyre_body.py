@@ -64,6 +64,14 @@ def tyre_body(study: StudyData, mesh: TyreMesh | None = None) -> Body:
     return Body(named, parts, held, flanges=flanges)
 
 
+def reference_density(study: StudyData, body: Body) -> Array:
+    """(n_elements, n_points) kg/m3 of the undeformed volume: the cards' at the drive's initial temperature."""
+    density = np.zeros(body.rings.weights.shape)
+    for region in body.parts:
+        density[body.mesh.subdomains[region]] = study.materials[region].density.at(study.card.drive.initial)
+    return density
+
+
 @dataclass(frozen=True, eq=False)
 class _Reader:
     study: StudyData

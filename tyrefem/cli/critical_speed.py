@@ -1,0 +1,106 @@
+"""`tyrefem press --critical-speed`: critical speeds over pressures and temperatures."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import typer
+
+from tyrefem.cli.common import print_json, warn
+from tyrefem.cli.progress import progress
+from tyrefem.errors import InputError
+from tyrefem.output.folder import results_folder
+
+if TYPE_CHECKING:
+    from tyrefem.api import Study
+    from tyrefem.mechanics.rolling.critical_speed import CriticalSpeed
+
+
+def print_critical_speeds(
+    study: Study,
+    pressures: str | None,
+    temperatures: str | None,
+    out: Path | None,
+    *,
+    force: bool,
+    quiet: bool,
+    as_json: bool,
+    pictures: bool,
+) -> None:
+    """Work out, write and print the critical speeds of all pressures and temperatures."""
+    from tyrefem.mechanics.rolling.critical_speed import NEEDS, critical_speed
+    from tyrefem.quantity import Unit
+    from tyrefem.reports.critical_speed import FILES, write_files
+
+    NEEDS.check(study)
+    given = _numbers("--pressure", pressures, Unit("Pa", gt=0))
+    warmed = _numbers("--temperature", temperatures, Unit("degC"))
+    options = {"pressure": pressures, "temperature": temperatures}
+    warn(study.warnings)
+    place = out or Path("results") / f"{study.name}-critical-speed"
+    with (
+        results_folder(place, "critical-speed", FILES, force=force) as folder,
+        progress(f"{study.name}: critical speed", quiet=quiet or as_json),
+    ):
+        try:
+            results = [critical_speed(study, pressure=p, temperature=t) for p in given for t in warmed]
+        except InputError as error:
+            raise _placed(error, study, options) from None
+        write_files(results, folder, pictures=pictures)
+    if as_json:
+        print_json([result.row() for result in results])
+        return
+    typer.echo(_words(results))
+    typer.echo(f"results in {folder}")
+
+
+def _placed(error: InputError, study: Study, options: dict[str, str | None]) -> InputError:
+    """The error with its field: the option, or the drive's pressure."""
+    if error.field in options and options[error.field] is not None:
+        return InputError(error.message, field=f"--{error.field}")
+    if error.field == "pressure":
+        return study.as_written(InputError(error.message, field="drive.phases.0.pressure", file=study.file))
+    return error if error.file else InputError(error.message, field=error.field, file=study.file)
+
+
+def _numbers(option: str, text: str | None, unit: object) -> list[float | None]:
+    """The numbers of a list with units, or None for the default."""
+    if text is None:
+        return [None]
+    try:
+        return [unit(part.strip()) for part in text.split(",")]  # type: ignore[operator]
+    except InputError as error:
+        raise error.within(field=option) from None
+
+
+def _words(results: list[CriticalSpeed]) -> str:
+    study = results[0].study
+    lines = [
+        study.title,
+        f"  critical speeds of the unloaded tyre without loss, waves up to {results[0].highest} round the wheel",
+        "  pressure  moduli at   wave of the belt                        any wave           belt, tyre at rest",
+    ]
+    for result in results:
+        belt, least = result.belt, result.any_wave
+        warm = "cards" if result.temperature is None else f"{result.temperature:.4g} degC"
+        wave = (
+            "none below 200 m/s"
+            if belt is None
+            else f"{belt.speed:6.1f} m/s, {belt.harmonic} waves of {belt.wavelength * 1e3:.0f} mm"
+        )
+        slowest = "none" if least is None else f"{least.speed:.1f} m/s, {least.region}"
+        rest = "none" if result.at_rest is None else f"{result.at_rest:.1f} m/s"
+        lines.append(f"  {result.pressure / 1e3:5.0f} kPa  {warm:11} {wave:39} {slowest:18} {rest}")
+    fastest = _fastest(results[0])
+    slow = min((result.belt.speed for result in results if result.belt is not None), default=None)
+    if slow is not None and fastest > slow:
+        lines.append(f"  warning: the drive's {fastest:.4g} m/s are above the critical speed of {slow:.4g} m/s")
+    return "\n".join(lines)
+
+
+def _fastest(result: CriticalSpeed) -> float:
+    from tyrefem.inputs.motion import motion_in
+
+    phases = result.study.card.drive.phases
+    return max(motion_in(phase, share).speed for phase in phases for share in (0.0, 1.0))
