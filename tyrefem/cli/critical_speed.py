@@ -49,7 +49,7 @@ def print_critical_speeds(
             raise _placed(error, study, options) from None
         write_files(results, folder, pictures=pictures)
     if as_json:
-        print_json([result.row() for result in results])
+        print_json({"study": study.name, "critical": [result.row() for result in results]})
         return
     typer.echo(_words(results))
     typer.echo(f"results in {folder}")
