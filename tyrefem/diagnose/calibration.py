@@ -8,7 +8,6 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from scipy.stats import chisquare
 
 from tyrefem.brief import Brief
 from tyrefem.diagnose.conformal import COVERAGE, LEADS, conformal_threshold
@@ -79,6 +78,8 @@ class RankTest(Brief):
     @classmethod
     def of(cls, ranks: Sequence[float]) -> RankTest:
         """Test of ranks between 0 and 1."""
+        from scipy.stats import chisquare
+
         counts, _ = np.histogram(ranks, RANKS, (0.0, 1.0))
         return cls(tuple(map(int, counts)), float(chisquare(counts).pvalue) if len(ranks) else float("nan"))
 

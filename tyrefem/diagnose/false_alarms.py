@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import beta, chi2
+from scipy.special import betaincinv, chdtrc
 
 from tyrefem.diagnose.linear_layout import LinearLayout
 from tyrefem.diagnose.pulls import pulls_probability
@@ -39,8 +39,8 @@ class Frequency:
     def interval(self) -> tuple[float, float]:
         """Lower and upper limit of the share."""
         k, n = self.count, self.of
-        low = float(beta.ppf(0.025, k, n - k + 1)) if k else 0.0
-        return low, float(beta.ppf(0.975, k + 1, n - k)) if k < n else 1.0
+        low = float(betaincinv(k, n - k + 1, 0.025)) if k else 0.0
+        return low, float(betaincinv(k + 1, n - k, 0.975)) if k < n else 1.0
 
     @property
     def agrees(self) -> bool:
@@ -80,10 +80,10 @@ def false_alarms(layout: LinearLayout, draws: int, seed: int) -> dict[str, Frequ
         misfit = ((data - J @ z) ** 2).sum(axis=0) + (z**2).sum(axis=0)
         w = np.linalg.solve(root, rest - held_out @ z)
         rejected = {
-            "misfit": chi2.sf(misfit, len(J)) < settings.rejected_p,
+            "misfit": chdtrc(len(J), misfit) < settings.rejected_p,
             "a pull": (np.abs(z) > settings.largest_pull).any(axis=0),
             "all pulls": pulls_probability((z**2).sum(axis=0), covariance) < settings.rejected_p,
-            "held-out runs": chi2.sf((w**2).sum(axis=0), max(len(rest), 1)) < settings.rejected_p,
+            "held-out runs": chdtrc(max(len(rest), 1), (w**2).sum(axis=0)) < settings.rejected_p,
         }
         for name, each in rejected.items():
             counts[name] += int(each.sum())

@@ -9,7 +9,7 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import chi2
+from scipy.special import chdtrc
 
 from tyrefem.brief import Brief
 from tyrefem.diagnose.candidates import Members
@@ -104,7 +104,7 @@ class FittedSet(Brief):
     @property
     def p_value(self) -> float:
         """Probability of a misfit at least as large if the model is right: chi-squared with one degree per block."""
-        return float(chi2.sf(self.misfit, self.readings))
+        return float(chdtrc(self.readings, self.misfit))
 
     @property
     def at_bound(self) -> tuple[str, ...]:
@@ -244,7 +244,7 @@ def predictive(r: Array, covariance: Array) -> tuple[float, float]:
     root = np.linalg.cholesky(covariance)
     z = np.linalg.solve(root, r)
     square = float(z @ z)
-    return float(-square / 2 - np.log(np.diag(root)).sum()), float(chi2.sf(square, len(r)))
+    return float(-square / 2 - np.log(np.diag(root)).sum()), float(chdtrc(len(r), square))
 
 
 def linear_about(residuals: Residuals, fit: FittedSet, unknowns: Sequence[Unknown]) -> LinearModel:

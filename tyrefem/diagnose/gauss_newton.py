@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import chi2
+from scipy.special import chdtrc
 
 from tyrefem.brief import Brief
 from tyrefem.diagnose.candidates import Members
@@ -105,7 +105,7 @@ class FitState(Brief):
     @property
     def _misfit_is_improbable(self) -> bool:
         """Whether noise alone would rarely give a misfit this large."""
-        return float(chi2.sf(self.misfit(self.r, self.x), len(self.r))) < self.settings.doubtful_p
+        return float(chdtrc(len(self.r), self.misfit(self.r, self.x))) < self.settings.doubtful_p
 
     # -- steps: each returns the next state
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
-from scipy.stats import norm
+from scipy.special import ndtr
 
 from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
 
@@ -156,7 +156,7 @@ def scale_of(values: Array) -> float:
     size = np.abs(values)
     # Rounded readings may have a median of 0.
     scale = float(np.median(size) / 0.6745) or float(size.mean())
-    inside = 1 - 2 * CUT * norm.pdf(CUT) / (2 * norm.cdf(CUT) - 1)
+    inside = 1 - 2 * CUT * np.exp(-(CUT**2) / 2) / np.sqrt(2 * np.pi) / (2 * ndtr(CUT) - 1)
     for _ in range(20):
         kept = size[size <= CUT * scale]
         if not len(kept):

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import chi2
+from scipy.special import chdtrc
 
 from tyrefem.brief import Brief
 from tyrefem.diagnose.fits import FittedSet
@@ -73,7 +73,7 @@ def pulls_probability(squares: NDArray[np.float64], covariance: NDArray[np.float
     first, second = float(np.trace(A)), float((A * A).sum())
     if first <= 0 or second <= 0:
         return np.ones_like(squares)
-    return np.asarray(chi2.sf(squares * first / second, first**2 / second))
+    return np.asarray(chdtrc(first**2 / second, squares * first / second))
 
 
 def improbable_pulls(key: str, fit: FittedSet, settings: DiagnosisSettings) -> str:

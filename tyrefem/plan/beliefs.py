@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import truncnorm
 
 from tyrefem.brief import Brief
 from tyrefem.compare.experiment import OUTSIDE_THE_RUBBER
@@ -116,6 +115,8 @@ def cut_moments(sd: float, low: float, high: float) -> tuple[float, float]:
     >>> round(mean, 4), round(variance, 4)      # sqrt(2/pi), 1 - 2/pi
     (0.7979, 0.3634)
     """
+    from scipy.stats import truncnorm
+
     mean, variance = truncnorm.stats(low / sd, high / sd, scale=sd, moments="mv")
     return float(mean), float(variance)
 
