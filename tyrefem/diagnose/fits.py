@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -39,6 +39,7 @@ class FittedSet(Brief):
         held out.
     linear : linear model of the fitted runs about the fit, d = J x + e. state : state from which the fit can continue.
     shared_error : error that readings share, beside which the set was fitted; None: none.
+    spread : unknown -> standard deviation of x that also counts other discrepancy models (`Robustness.spread`).
     """
 
     members: Members
@@ -53,6 +54,7 @@ class FittedSet(Brief):
     linear: LinearModel
     state: FitState
     shared_error: SharedError | None = None
+    spread: Mapping[Unknown, float] = field(default_factory=dict)
 
     @property
     def steps(self) -> int:
@@ -97,9 +99,9 @@ class FittedSet(Brief):
 
     @cached_property
     def sd(self) -> dict[Unknown, float]:
-        """Unknown -> posterior standard deviation of x."""
+        """Unknown -> posterior standard deviation of x; `spread` where it is given."""
         fitted = dict(zip(self.unknowns, (float(x) for x in self.posterior.sd), strict=True))
-        return fitted | {unknown: 0.0 for member in self.members for unknown in member.presence}
+        return fitted | {unknown: 0.0 for member in self.members for unknown in member.presence} | dict(self.spread)
 
     @property
     def p_value(self) -> float:

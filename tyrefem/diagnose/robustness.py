@@ -99,6 +99,23 @@ class Robustness(Brief):
         ]
         return min(x - 2 * sd for x, sd in known), max(x + 2 * sd for x, sd in known)
 
+    def spread(self, fit: FittedSet) -> dict[Unknown, float]:
+        """Unknown of a fit's effects -> standard deviation of x over the discrepancy models, at least that of the fit.
+
+        With x_m and s_m beside model m, of probability p_m, and x the value of the fit: the root of
+        (sum of p_m (s_m^2 + (x_m - x)^2)) / (sum of p_m).
+        """
+        wider = {}
+        for unknown in (unknown for member in fit.members for unknown in member.unknowns if unknown in fit.values):
+            known = [
+                (model.probability, *model.values[unknown.key]) for model in self.models if unknown.key in model.values
+            ]
+            total = sum(probability for probability, *_ in known)
+            if total > 0:
+                square = sum(p * (sd**2 + (x - fit.values[unknown]) ** 2) for p, x, sd in known) / total
+                wider[unknown] = max(fit.sd[unknown], math.sqrt(square))
+        return wider
+
     def agrees(self, candidate: Candidate) -> bool:
         """Whether an effect has the same sign beside every model, and beside probable models like amounts (`APART`)."""
         if not self._one_sign(candidate):

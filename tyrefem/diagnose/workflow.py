@@ -173,7 +173,7 @@ def _look(
             work.tick("reduced models are not accurate at the best fit: repeating with simulations")
             predictions = replace(predictions, modes=(), given_up=True)
             confirmed = ranked_with(predictions)
-        ranking = confirmed
+        ranking = beside_other_models(confirmed)
         values, sd, missing_unknowns = _missing_unknowns(residuals, ranking)
         change = changes(residuals, values, sd, missing_unknowns)
         work.tick("running the amended study")
@@ -379,6 +379,13 @@ def allowed_error(ranking: Ranking, settings: DiagnosisSettings) -> float:
     shift = math.sqrt(max(ranking.best.misfit / ranking.best.readings, 1.0))
     far = min(lead / (settings.reduced_shift * shift), settings.reduced_allowed_far)
     return max(far, settings.reduced_allowed)
+
+
+def beside_other_models(ranking: Ranking) -> Ranking:
+    """The ranking; identified effects get standard deviations that count all discrepancy models (`Robustness.spread`)."""
+    if ranking.judgement.verdict != IDENTIFIED or ranking.robustness is None:
+        return ranking
+    return replace(ranking, best=replace(ranking.best, spread=ranking.robustness.spread(ranking.best)))
 
 
 def _simulated_best(ranking: Ranking, predictions: Predictions) -> Ranking | None:
