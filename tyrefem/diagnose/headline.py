@@ -16,7 +16,7 @@ from tyrefem.diagnose.heat_sources import STATED, UnknownSource
 from tyrefem.diagnose.heat_words import course_words, source_place
 from tyrefem.diagnose.materiality import Movement, largest_change
 from tyrefem.diagnose.numbers import amount, correction_subject, correction_words, percent, run_words
-from tyrefem.diagnose.partly_words import besides_words, explaining_words, least_words, ranges
+from tyrefem.diagnose.partly_words import besides_words, explaining_words, least_words, or_outside_words, ranges
 from tyrefem.diagnose.pulls import Pull, pulls
 from tyrefem.diagnose.result_tables import clearest, competing_sets, inclusion_probability
 from tyrefem.diagnose.strain_words import law_in_short, law_sure
@@ -27,6 +27,7 @@ from tyrefem.diagnose.words import (
     effect_amounts,
     effect_sentence,
     look_folder,
+    missing_words,
     next_words,
     phase_words,
 )
@@ -135,17 +136,18 @@ def _confounded(d: DiagnosisData) -> tuple[str, str, str]:
         return f"Something is missing, perhaps this: {clause}", f"{_opened(doubt)} (fitted runs alone: {chance}).", step
     if certain:
         chance = percent(min(d.judgement.named[member.key] for member in certain))
-        sure = f"{_it_is(certain)} {chance} probable; {_closed(d)}."
-        return _joined([effect_clause(d, member) for member in certain]), f"{sure}{besides(d, certain)}", step
+        sure = f"{_it_is(certain)} {chance} probable; {_closed(d)}.{besides(d, certain)}"
+        return _joined([effect_clause(d, member) for member in certain]), f"{sure} {or_outside_words(d)}".rstrip(), step
     sets = competing_sets(d)
     described = ", or ".join(_set_words(entry) for entry in sets[:SETS])
     rest = len(sets) - SETS
     more = "" if rest < 1 else ", or a less probable set" if rest == 1 else f", or one of {rest} less probable sets"
     shares = ", ".join(f"{entry.key} {percent(inclusion_probability(d, entry))}" for entry in sets[:SETS])
-    wrong = f"An effect is missing, but these sensors and runs cannot show which: {described}{more}."
+    wrong = f"{missing_words(d)}, but these sensors and runs cannot show which: {described}{more}."
     both = sum(inclusion_probability(d, entry) for entry in sets[:SETS]) > 1.0
     together = " (several may act together)" if both else ""
-    return wrong, f"Each acts with this probability: {shares}{together}; {_closed(d)}.", step
+    sure = f"Each acts with this probability: {shares}{together}; {_closed(d)}."
+    return wrong, f"{sure} {or_outside_words(d)}".rstrip(), step
 
 
 def _partly(d: DiagnosisData) -> tuple[str, str, str]:

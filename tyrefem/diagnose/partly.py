@@ -12,6 +12,9 @@ from tyrefem.diagnose.robustness import Robustness, UnderDiscrepancy
 from tyrefem.diagnose.settings import DiagnosisSettings
 from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, PARTLY, UNEXPLAINED, Judgement
 
+#: Effects alone, without a discrepancy, are excluded below this probability.
+NOT_EXCLUDED = 0.01
+
 
 class Revision(NamedTuple):
     """A verdict with what else may be wrong, its ``reasons`` and ``doubts``, and ``members``, the effects that are part
@@ -34,7 +37,7 @@ def beside_discrepancies(
     """The verdict with what else may be wrong, and the effects that are part of the cause.
 
     - *identified* stays if every member acts with at least 90 % probability, averaged over the discrepancy models by
-      their probabilities. *confounded* stays if the model as it is is the most probable one.
+      their probabilities. *confounded* stays unless the data exclude that effects alone are wrong (`NOT_EXCLUDED`).
     - *partly identified*: more is wrong than effects, and some act with at least 90 % probability beside every
       discrepancy model, with amounts that agree; beside the most probable model noise explains the misfit, and they
       predict the held-out runs no worse than no effect.
@@ -55,7 +58,11 @@ def beside_discrepancies(
     elif judgement.verdict == CONFOUNDED:
         if leading.name == NONE:
             return revision
-        revision = revision.doubted(f"the data ask for {leading.words} ({_percent(leading.probability)})")
+        asked_for = f"the data ask for {leading.words} ({_percent(leading.probability)})"
+        if robustness.as_it_is < NOT_EXCLUDED:
+            revision = revision.doubted(asked_for)
+        else:
+            revision = revision._replace(reasons=(*revision.reasons, f"{asked_for}, but do not exclude effects alone"))
     by_key = {member.key: member for fits in leading.fits for member in fits}
     members = robustness.robust(by_key.values(), least)
     for member in replace(robustness, laws=()).robust(by_key.values(), least):

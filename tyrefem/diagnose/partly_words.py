@@ -113,6 +113,21 @@ def _energy_explains(d: DiagnosisData) -> str:
     )
 
 
+def or_outside_words(d: DiagnosisData) -> str:
+    """What may be wrong in place of confounded effects, or besides them, as a sentence; empty if nothing leads."""
+    leading = d.robustness.models[0] if d.robustness is not None else None
+    if leading is None or leading.name == NONE:
+        return ""
+    chance = percent(leading.probability)
+    if not leading.best:
+        return (
+            f"Or the cause is something outside the catalogue: {leading.words}, which needs no effect beside it "
+            f"({chance} probable)."
+        )
+    keys = " + ".join(member.key for member in leading.best)
+    return f"The data also speak for {leading.words} ({chance} probable); beside it {keys} is the most probable set."
+
+
 def beyond_noise(rms_of_all: float, noise: float) -> float:
     """sqrt(rms^2 - noise^2), K, of a deviation; 0 if it is no larger than the noise."""
     return math.sqrt(max(rms_of_all**2 - noise**2, 0.0))

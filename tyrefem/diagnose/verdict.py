@@ -197,6 +197,24 @@ def _bounded(fit: FittedSet) -> list[str]:
     return [f"{member.key} ({parameter_name(unknown)})" for member, unknown in bounded]
 
 
+def _against_outside(
+    ranking: Sequence[RankedSet], fit_of: Callable[[Members], FittedSet | None], settings: DiagnosisSettings
+) -> RankedSet | None:
+    """The set of effects that the data cannot tell from the leading heat of unknown origin; None if there is none.
+
+    Noise explains its misfit, and the held-out runs speak neither against it nor clearly for the heat.
+    """
+    leading, *others = ranking
+    entry = next((each for each in others if not each.outside), None)
+    if entry is None or not entry.members or leading.probability >= settings.named_probability:
+        return None
+    fit = entry.fit or fit_of(entry.members)
+    if fit is None or rejection(entry.key, fit, settings):
+        return None
+    lead = leading.held_out - fit.held_out
+    return None if lead > settings.held_out_margin else entry
+
+
 def judge(
     ranking: Sequence[RankedSet],
     fit_of: Callable[[Members], FittedSet | None],
@@ -204,9 +222,10 @@ def judge(
 ) -> Judgement:
     """The verdict on sets ranked by probability.
 
-    - *unexplained*: heat of unknown origin is most probable; or the best set leaves a misfit that noise cannot explain,
-      needs improbable corrections, or is rejected by the held-out runs; or these are predicted clearly better without
-      any effect, or by heat of unknown origin.
+    - *unexplained*: heat of unknown origin has at least 90 % probability, or is most probable and no effects stand
+      against it; or the best set leaves a misfit that noise cannot explain, needs improbable corrections, or is
+      rejected by the held-out runs; or these are predicted clearly better without any effect, or by heat of unknown
+      origin.
     - *no gap*: the empty set is most probable.
     - *identified*: the best set acts with at least 90 % probability, and alone with at least 50 %; no best value of an
       amplitude lies beyond a bound; no other set predicts the held-out runs clearly better; its fit has converged.
@@ -229,6 +248,9 @@ def judge(
         return Judgement(name, tuple(ranking), named, tuple(credible), tuple(reasons), doubts)
 
     if best.outside:
+        if against := _against_outside(ranking, fit_of, settings):
+            reasons.append(f"these sensors and runs cannot tell {against.key} from a cause outside the catalogue")
+            return verdict(CONFOUNDED)
         reasons.append("heat of unknown origin explains the data better than any set of effects in the catalogue")
         return verdict(UNEXPLAINED)
     if fit is not None:

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from tyrefem.diagnose.candidates import Candidate
+from tyrefem.diagnose.discrepancy import NONE
 from tyrefem.diagnose.draft_effect import EFFECTS, draft_effects
 from tyrefem.diagnose.heat_words import heat_words
 from tyrefem.diagnose.law_words import law_words
@@ -16,6 +17,7 @@ from tyrefem.diagnose.partly_words import (
     besides_words,
     explaining_words,
     least_words,
+    or_outside_words,
     ranges,
     tried_words,
 )
@@ -203,16 +205,26 @@ def _confounded(d: DiagnosisData, closing: str) -> tuple[str, ...]:
         first += "" if d.best.at_bound else besides(d, certain)
     else:
         sets = competing_sets(d)
-        shown = [f"{entry.key} ({percent(inclusion_probability(d, entry))})" for entry in sets[:4]]
+        names = ["a cause outside the catalogue" if entry.outside else entry.key for entry in sets[:4]]
+        shown = [
+            f"{name} ({percent(inclusion_probability(d, entry))})" for name, entry in zip(names, sets, strict=False)
+        ]
         more = len(sets) - len(shown)
         shown += [f"one of {more} less probable sets" if more > 1 else "a less probable set"] if more else []
-        first = f"An effect is missing, but these sensors and runs cannot show which: {', or '.join(shown)}."
+        first = f"{missing_words(d)}, but these sensors and runs cannot show which: {', or '.join(shown)}."
         if best.members:
             first += f" Most probable: {clauses}."
     if d.best.at_bound:
         first += " Its best value lies beyond a physical bound, so it is not certain."
-    decides = next_words(d)
-    return (first, *d.judgement.doubts, *([decides] if decides else []), closing)
+    further = [sentence for sentence in (or_outside_words(d), next_words(d)) if sentence]
+    return (first, *d.judgement.doubts, *further, closing)
+
+
+def missing_words(d: DiagnosisData) -> str:
+    """Whether an effect is missing: only "perhaps" if a discrepancy that needs no effect is the most probable."""
+    leading = d.robustness.models[0] if d.robustness is not None else None
+    perhaps = d.judgement.best.outside or (leading is not None and leading.name != NONE and not leading.best)
+    return "Perhaps an effect is missing" if perhaps else "An effect is missing"
 
 
 def besides(d: DiagnosisData, certain: Sequence[Candidate]) -> str:
