@@ -77,6 +77,13 @@ def bottoming() -> list[tuple[float, float, bool]]:
     ]
 
 
+def at_the_rim() -> int:
+    """Rows whose load is that just before the crown meets the rim, which comes before the bottoming radius."""
+    rows = [row for row in table("bottoming") if row["computed load [N]"] and not row["message"]]
+    depths = [(row["reached deflection [mm]"], row["deflection at the bottoming radius [mm]"]) for row in rows]
+    return sum(float(reached) < 0.999 * float(deflection) for reached, deflection in depths)
+
+
 def order(pairs: Sequence[tuple[float, float, bool]]) -> float:
     """Rank correlation of two loads (Spearman)."""
     from scipy.stats import spearmanr
@@ -132,7 +139,8 @@ def _of_bottoming() -> list[str]:
     correlation = order(reached)
     rows = [
         ("rows with a bottoming load", str(len(pairs)), ""),
-        ("balance reaches the bottoming radius", str(len(reached)), ""),
+        ("balance reaches the bottoming radius, or the rim", str(len(reached)), ""),
+        ("crown meets the rim before the bottoming radius", str(at_the_rim()), ""),
         ("load there over bottoming load, median", f"{np.median(share):.3f}", ""),
         ("the same, range", f"{share.min():.3f} to {share.max():.3f}", ""),
         (

@@ -57,3 +57,17 @@ def test_verdicts_follow_the_uncertainty(page: ModuleType) -> None:
 def test_the_order_of_loads_is_a_rank_correlation(page: ModuleType) -> None:
     assert page.order([(1.0, 5.0, True), (2.0, 6.0, True), (3.0, 70.0, False)]) == pytest.approx(1.0)
     assert page.order([(1.0, 70.0, True), (2.0, 6.0, True), (3.0, 5.0, False)]) == pytest.approx(-1.0)
+
+
+def test_every_bottoming_radius_of_the_chosen_rows_is_computed(page: ModuleType, benchmark: ModuleType) -> None:
+    wanted = [tyre.number for tyre in benchmark.chosen() if tyre.bottoming_load > 0 and tyre.bottoming_radius > 0]
+    rows = page.table("bottoming")
+    assert [int(row["row"]) for row in rows] == wanted
+    assert len(wanted) == 30
+    short = [
+        row for row in rows if float(row["reached deflection [mm]"]) < 0.98 * float(row["crown meets the rim at [mm]"])
+    ]
+    assert all(
+        float(row["reached deflection [mm]"]) == float(row["deflection at the bottoming radius [mm]"]) for row in short
+    )
+    assert page.at_the_rim() == len(rows) - 27
