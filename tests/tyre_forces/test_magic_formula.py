@@ -1,0 +1,155 @@
+"""The Magic Formula: its slopes and peaks, coefficients from points, `.tir` files."""
+
+import numpy as np
+import pytest
+
+from tyrefem.errors import InputError
+from tyrefem.tyre_forces.fitting import ALIGNING, LATERAL, LONGITUDINAL, fit_magic_formula
+from tyrefem.tyre_forces.magic_formula import ALL, MagicFormula
+from tyrefem.tyre_forces.points import ForcePoints
+from tyrefem.tyre_forces.property_file import TyreDimensions, read_tir, tir_text
+
+pytestmark = pytest.mark.fast
+
+KNOWN = {
+    "PCX1": 1.65, "PDX1": 1.1, "PDX2": -0.08, "PEX1": 0.3, "PEX2": 0.1, "PKX1": 22.0, "PKX2": 1.0, "PKX3": 0.1,
+    "PCY1": 1.35, "PDY1": 0.98, "PDY2": -0.12, "PEY1": -0.8, "PEY2": -0.3, "PKY1": -17.0, "PKY2": 1.7, "PKY4": 2.0,
+    "PKY6": -0.9, "PVY3": -0.2, "PHY1": 0.002, "PVY1": 0.01, "QBZ1": 9.0, "QBZ2": -1.0, "QBZ10": 1.0, "QCZ1": 1.15,
+    "QDZ1": 0.1, "QDZ2": -0.01, "QEZ1": -2.0, "QHZ1": 0.003,
+}  # fmt: skip
+TYRE = MagicFormula(KNOWN, 4000.0, 2.2e5, 0.31)
+LOADS = np.array([2000.0, 3500.0, 5000.0, 6500.0])
+PARTS = TyreDimensions(0.205, 0.2032, 0.165, 0.55, 9.2, 2.0e5, 16.7)
+
+
+ANGLES = np.radians(np.linspace(-12, 12, 17))
+CAMBERS = np.radians([0.0, 2.0, 4.0])
+
+
+def curves(loads=LOADS, angles=ANGLES, cambers=CAMBERS):
+    load, angle, camber = (part.ravel() for part in np.meshgrid(loads, angles, cambers, indexing="ij"))
+    steered = ForcePoints.of({
+        "load": load, "slip_angle": angle, "camber": camber, "pressure": np.full(load.shape, 2.2e5),
+        "lateral": TYRE.lateral_force(load, angle, camber), "aligning": TYRE.aligning_moment(load, angle, camber),
+    })  # fmt: skip
+    load, slip = (part.ravel() for part in np.meshgrid(loads, np.linspace(-0.3, 0.3, 20), indexing="ij"))
+    driven = {"load": load, "slip": slip, "pressure": np.full(load.shape, 2.2e5)}
+    driven["longitudinal"] = TYRE.longitudinal_force(load, slip)
+    both = ForcePoints.of(driven)
+    return ForcePoints.of({
+        name: np.concatenate([getattr(steered, name), getattr(both, name)]) for name in ForcePoints.__annotations__
+    })  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def fit():
+    return fit_magic_formula(curves(), 0.31, nominal_load=4000.0)
+
+
+def test_stiffness_is_the_slope_and_the_peak_is_friction_times_load():
+    tyre = MagicFormula(KNOWN | {"PHY1": 0.0, "PVY1": 0.0}, 4000.0, 2.2e5, 0.31)
+    step = 1e-6
+    slope = (tyre.lateral_force(LOADS, step) - tyre.lateral_force(LOADS, -step)) / (2 * step)
+    assert slope == pytest.approx(tyre.cornering_stiffness(LOADS), rel=1e-6)
+    slope = (tyre.longitudinal_force(LOADS, step) - tyre.longitudinal_force(LOADS, -step)) / (2 * step)
+    assert slope == pytest.approx(tyre.slip_stiffness(LOADS), rel=1e-6)
+    largest = np.abs(tyre.longitudinal_force(4000.0, np.linspace(0, 1, 20001))).max()
+    assert largest == pytest.approx(1.1 * 4000.0, rel=1e-5)
+
+
+def test_moment_is_force_times_trail_near_straight_ahead():
+    tyre = MagicFormula(KNOWN | {"PHY1": 0.0, "PVY1": 0.0, "QHZ1": 0.0}, 4000.0, 2.2e5, 0.31)
+    assert tyre.trail(4000.0, 0.0) == pytest.approx(0.1 * 0.31)
+    assert tyre.aligning_moment(4000.0, 0.01) == pytest.approx(
+        -tyre.trail(4000.0, 0.01) * tyre.lateral_force(4000.0, 0.01)
+    )
+    assert tyre.aligning_moment(4000.0, 0.01) > 0 > tyre.lateral_force(4000.0, 0.01)
+
+
+def test_fit_gives_the_coefficients_back(fit):
+    assert max(fit.errors.values()) < 1e-8
+    for name in fit.fitted:
+        assert fit.formula.coefficients[name] == pytest.approx(KNOWN.get(name, 0.0), abs=2e-3), name
+    assert set(KNOWN) - {"PKY4", "QBZ10"} <= set(fit.fitted)
+
+
+def test_noise_moves_the_curves_by_no_more_than_itself():
+    points = curves()
+    noise = np.random.default_rng(3).normal(0.0, 20.0, len(points))
+    noisy = ForcePoints.of(
+        {name: getattr(points, name) for name in ForcePoints.__annotations__} | {"lateral": points.lateral + noise}
+    )
+    fit = fit_magic_formula(noisy, 0.31, nominal_load=4000.0)
+    angles = np.radians(np.linspace(-12, 12, 49))
+    left = fit.formula.lateral_force(5000.0, angles) - TYRE.lateral_force(5000.0, angles)
+    assert np.sqrt((left**2).mean()) < 10.0
+
+
+def test_one_load_and_one_sign_tell_fewer_coefficients():
+    points = curves([3500.0], np.radians(np.linspace(0, 12, 9)), [0.0])
+    fit = fit_magic_formula(points.where(points.slip >= 0), 0.31)
+    assert set(fit.fitted) == set(" ".join((LONGITUDINAL[1], LATERAL[1], ALIGNING[1])).split())
+    assert fit.errors["longitudinal"] < 1e-6
+    assert max(fit.errors.values()) < 0.03
+
+
+def test_only_what_was_given_is_fitted():
+    points = curves()
+    fit = fit_magic_formula(points.where(points.free), 0.31)
+    assert set(fit.errors) == {"lateral", "aligning"}
+    assert "PKX1" not in fit.fitted
+
+
+def test_a_tir_file_gives_the_forces_back(fit, tmp_path):
+    path = tmp_path / "tyre.tir"
+    path.write_text(tir_text(fit, PARTS, "205/55R16 by finite elements"))
+    again = read_tir(path)
+    angles = np.radians(np.linspace(-10, 10, 21))
+    assert again.lateral_force(4200.0, angles, 0.03) == pytest.approx(
+        fit.formula.lateral_force(4200.0, angles, 0.03), rel=1e-5
+    )
+    assert again.aligning_moment(4200.0, angles) == pytest.approx(fit.formula.aligning_moment(4200.0, angles), abs=1e-3)
+    assert again.longitudinal_force(4200.0, 0.07) == pytest.approx(
+        fit.formula.longitudinal_force(4200.0, 0.07), rel=1e-6
+    )
+
+
+def test_a_tir_file_has_every_section_once(fit):
+    text = tir_text(fit, PARTS, "title")
+    sections = [part.partition("]")[::2] for part in text.split("\n[")]
+    assert len({name for name, _ in sections}) == len(sections)
+    assert {"MODEL", "VERTICAL", "ALIGNING_COEFFICIENTS"} <= {name for name, _ in sections}
+    for _, part in sections:
+        names = [line.partition("=")[0].strip() for line in part.splitlines() if "=" in line]
+        assert len(names) == len(set(names))
+    assert all(f"\n{name} " in text for name in ALL)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("FITTYP = 52\n", "must be 61, not 52"),
+        ("FITTYP = 61\nPCY1 = many\n", "line 2: 'many' is not a number"),
+        ("FITTYP = 61\nNOMPRES = 2e5\nUNLOADED_RADIUS = 0.3\n", "is missing"),
+    ],
+)
+def test_a_wrong_tir_file_is_one_clear_error(text, message, tmp_path):
+    path = tmp_path / "wrong.tir"
+    path.write_text(text)
+    with pytest.raises(InputError, match=message):
+        read_tir(path)
+    with pytest.raises(InputError, match="cannot be read"):
+        read_tir(tmp_path / "none.tir")
+
+
+def test_wrong_points_are_one_clear_error():
+    with pytest.raises(InputError, match="no column 'lateral_force'"):
+        ForcePoints.of({"load": [1.0], "lateral_force": [1.0]})
+    with pytest.raises(InputError, match="loads must be positive"):
+        ForcePoints.of({"load": [0.0]})
+    with pytest.raises(InputError, match="value 2 is not finite"):
+        ForcePoints.of({"load": [1.0, 2.0], "lateral": [0.0, np.nan]})
+    with pytest.raises(InputError, match="too few points"):
+        fit_magic_formula(ForcePoints.of({"load": [1e3, 1e3], "slip_angle": [0.0, 0.1], "lateral": [0.0, -1e3]}), 0.3)
+    with pytest.raises(InputError, match="no coefficient 'PCY7'"):
+        MagicFormula({"PCY7": 1.0}, 4e3, 2e5, 0.3)
