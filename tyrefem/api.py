@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from tyrefem.compare import comparison
 from tyrefem.diagnose import diagnosis
+from tyrefem.fatigue import life as lives
 from tyrefem.heating_test import identification
 from tyrefem.inputs import study as studies
 from tyrefem.mechanics.footprint import natural_frequencies as vibrations
@@ -23,6 +24,8 @@ from tyrefem.simulation import result
 from tyrefem.sweep import campaign, design
 
 if TYPE_CHECKING:
+    from tyrefem.fatigue.places import FailurePlace
+    from tyrefem.fatigue.sensitivity import LifeShift
     from tyrefem.geometry import Section
     from tyrefem.heating_test.card import RigCard
     from tyrefem.heating_test.grid import Fineness
@@ -229,6 +232,43 @@ class NaturalModes(vibrations.NaturalFrequencies):
         return Path(folder)
 
 
+class Life(lives.LifeData):
+    """How long a study's tyre lasts, with `places`, `shifts` and `save`."""
+
+    @property
+    def places(self) -> tuple[FailurePlace, ...]:
+        """The ten places that fail first, the shortest life first."""
+        from tyrefem.fatigue.places import first_places
+
+        return first_places(self)
+
+    @cached_property
+    def shifts(self) -> tuple[LifeShift, ...]:
+        """The shortest life with 10 % more speed, 10 % more load, 10 % less pressure, 10 K more ambient: four runs."""
+        from tyrefem.fatigue.sensitivity import shifts
+
+        return shifts(self)
+
+    def summary(self) -> dict[str, Any]:
+        """Contents of `summary.json` without the shifts."""
+        from tyrefem.reports.life import summary
+
+        return summary(self)
+
+    def save(self, folder: str | Path, *, sensitivity: bool = False, pictures: bool = True, vtk: bool = True) -> Path:
+        """Write the files of `tyrefem life`: ``summary.json``, ``life.csv``, ``life.png``, ``life.vtu``; return the
+        folder. ``sensitivity``: also the `shifts`, as ``sensitivity.csv``.
+
+        Raises
+        ------
+        InputError : the folder cannot be written.
+        """
+        from tyrefem.reports.life import write_files
+
+        write_files(self, Path(folder), self.shifts if sensitivity else (), pictures=pictures, vtk=vtk)
+        return Path(folder)
+
+
 class Study(studies.StudyData):
     """A study, with methods to run, compare, diagnose and sweep it. `study` makes it; `replace` changes it.
 
@@ -318,6 +358,19 @@ class Study(studies.StudyData):
         ['lateral']
         """
         return with_verbs(NaturalModes, vibrations.natural_frequencies(self, harmonics, count, **options))
+
+    def life(self, **options: Any) -> Life:
+        """Distance until small flaws become cracks, at every point, by strain cycle and temperatures of a run.
+
+        Options: ``temperature`` (degC everywhere, without a run), ``plateau``, ``result`` (a finished run): see
+        `tyrefem.fatigue.life.life`. Not compared with any measured life.
+
+        >>> coarse = {"mesh.size": "14 mm", "mechanics.strain": "fem", "mechanics.motion": "linear"}
+        >>> tyre = study("nasa-22x5.5-8pr", coarse).life(temperature=80.0)
+        >>> len(tyre.places), tyre.left_out
+        (10, ('bead',))
+        """
+        return with_verbs(Life, lives.life(self, **options))
 
     def campaign(self) -> Campaign:
         """The cases of the study's table, each of them a study."""

@@ -1,4 +1,4 @@
-"""Life of shipped tyres on coarse meshes: temperature, Miner's sum, mean strain, what is left out, refusals."""
+"""LifeData of shipped tyres on coarse meshes: temperature, Miner's sum, mean strain, what is left out, refusals."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pytest
 
 import tyrefem
 from tyrefem.errors import InputError
-from tyrefem.fatigue.life import Life, check, life
+from tyrefem.fatigue.life import LifeData, check, life
 from tyrefem.fatigue.matrix_cycle import STEPS, MatrixCycle
 from tyrefem.fatigue.places import APART, first_places
 from tyrefem.fatigue.sensitivity import changed
@@ -23,25 +23,25 @@ def tyre(**changes: Any) -> tyrefem.api.Study:
 
 
 @pytest.fixture(scope="module")
-def at_60() -> Life:
+def at_60() -> LifeData:
     return life(tyre(), temperature=60.0)
 
 
-def test_the_bead_has_no_table_and_is_left_out(at_60: Life) -> None:
+def test_the_bead_has_no_table_and_is_left_out(at_60: LifeData) -> None:
     assert at_60.left_out == ("bead",)
     assert set(at_60.regions) == {"carcass", "tread", "sidewall"}
     assert np.isnan(at_60.km[at_60.members("bead")]).all()
     assert np.isfinite(at_60.km[at_60.members("carcass")]).all()
 
 
-def test_normals_are_unit_vectors_and_energies_are_ordered(at_60: Life) -> None:
+def test_normals_are_unit_vectors_and_energies_are_ordered(at_60: LifeData) -> None:
     inside = np.isfinite(at_60.km)
     np.testing.assert_allclose(np.linalg.norm(at_60.normals[inside], axis=-1), 1.0, rtol=1e-12)
     assert (at_60.peak[inside] >= at_60.valley[inside]).all()
     np.testing.assert_allclose(at_60.shares[:, inside], 1.0, rtol=1e-12)
 
 
-def test_warmer_rubber_lasts_shorter_by_its_temperature_factor(at_60: Life) -> None:
+def test_warmer_rubber_lasts_shorter_by_its_temperature_factor(at_60: LifeData) -> None:
     hot = life(tyre(), temperature=110.0)
     inside = np.isfinite(hot.km) & (hot.km < 1e11)
     rate = at_60.study.materials["carcass"].fatigue.temperature_rate  # type: ignore[union-attr]
@@ -49,7 +49,7 @@ def test_warmer_rubber_lasts_shorter_by_its_temperature_factor(at_60: Life) -> N
     np.testing.assert_allclose(hot.temperatures[inside], 110.0)
 
 
-def test_distance_does_not_depend_on_speed_or_duration_at_a_given_temperature(at_60: Life) -> None:
+def test_distance_does_not_depend_on_speed_or_duration_at_a_given_temperature(at_60: LifeData) -> None:
     other = life(tyre(drive__speed="35 mph", drive__duration="20 s"), temperature=60.0)
     inside = np.isfinite(at_60.km)
     np.testing.assert_allclose(other.km[inside], at_60.km[inside], rtol=1e-9)
@@ -59,7 +59,7 @@ def test_miners_sum_of_two_loads() -> None:
     """1/L of a drive of two phases is the mean of both 1/L by distance, on the plane of the worse sum."""
     light, heavy = ({"name": name, "duration": "60 s", "load": load} for name, load in (("a", "6 kN"), ("b", "9 kN")))
 
-    def of(*phases: dict[str, str]) -> Life:
+    def of(*phases: dict[str, str]) -> LifeData:
         study = tyre()
         drive = {key: value for key, value in study.data["drive"].items() if key not in ("load", "duration")}
         return life(study.replace({"drive": {**drive, "phases": list(phases)}}), temperature=60.0)
@@ -116,7 +116,7 @@ def test_temperatures_of_the_run_are_used() -> None:
     assert plateau.element_km[hottest] < course.element_km[hottest]
 
 
-def test_places_are_sorted_and_apart(at_60: Life) -> None:
+def test_places_are_sorted_and_apart(at_60: LifeData) -> None:
     places = first_places(at_60)
     assert len(places) == 10
     lives = [place.km for place in places]

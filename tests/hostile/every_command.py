@@ -25,6 +25,7 @@ MORE = {
     "plan": ["--set", "plan.drives=2", "--set", "plan.sensors_most=0"],
     "export": ["--tolerance", "50 K"],
     "rig layers": ["--most", "1"],
+    "life": ["--set", "mechanics.strain=fem", "--set", "mechanics.motion=linear", "--no-sensitivity"],
 }
 #: Words of commands whose arguments are a kind and a name.
 KINDS = {"show": ["section", "nasa-22x5.5-8pr"], "new": ["study", "another"]}

@@ -34,6 +34,7 @@ COMMANDS = {
     "blind": ["blind", "STUDY"],
     "press": ["press", "STUDY"],
     "modes": ["modes", "STUDY"],
+    "life": ["life", "STUDY"],
     "strain": ["strain", "STUDY"],
     "mesh": ["show", "mesh", "STUDY"],
     "mesh file": ["show", "mesh", "STUDY", "--out", "tyre.vtu"],
@@ -48,6 +49,7 @@ VERBS: dict[str, Callable[[tf.Study], Any]] = {
     "blind": lambda study: run_blind(study, 1, 1, Path("blind")),
     "export": lambda study: export(study, "tyre.npz"),
     "press": press,
+    "life": lambda study: study.life(),
     "strain laws": compare_laws,
 }
 

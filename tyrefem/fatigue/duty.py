@@ -5,23 +5,42 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from tyrefem.fatigue.growth import temperature_factor
 from tyrefem.materials.fatigue import Fatigue
 
 if TYPE_CHECKING:
     from tyrefem.mechanics.cycle_schedule import CycleSchedule
-    from tyrefem.simulation.result import ResultData
+    from tyrefem.simulation.rolling_tyre import RollingTyre
 
 Array = NDArray[np.float64]
+
 #: Intervals of a phase for a temperature that is given.
 INTERVALS = 16
 #: Temperatures at places (n, 2) in (r, z), m: (times, n), degC.
 Temperatures = Callable[[Array], Array]
+
+
+class WarmRun(Protocol):
+    """What a duty asks of a finished run; variants of reduced models have it too."""
+
+    @property
+    def tyre(self) -> RollingTyre:
+        """The rolling tyre, with its strain cycles."""
+        ...
+
+    @property
+    def times(self) -> Array:
+        """Times of the readings, (n,) s."""
+        ...
+
+    def at(self, points: ArrayLike) -> Array:
+        """Temperatures at points (n, 2) in (r, z), m: (n_times, n), degC."""
+        ...
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,7 +58,7 @@ class Duty:
     temperatures: Temperatures
 
     @classmethod
-    def of_run(cls, result: ResultData, *, plateau: bool = False) -> Duty:
+    def of_run(cls, result: WarmRun, *, plateau: bool = False) -> Duty:
         """The drive of a finished run at its temperatures; with ``plateau`` each phase at those of its end."""
         times = np.asarray(result.times)
         if not plateau:

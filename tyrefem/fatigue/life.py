@@ -23,10 +23,10 @@ from tyrefem.requirements import Requirements
 
 if TYPE_CHECKING:
     from tyrefem.fatigue.cracking_energy import CrackingEnergy
+    from tyrefem.fatigue.duty import WarmRun
     from tyrefem.inputs.study import StudyData
     from tyrefem.materials.fatigue import Fatigue
     from tyrefem.mechanics.solid.elements import Rings
-    from tyrefem.simulation.result import ResultData
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -39,8 +39,8 @@ TOGETHER = 64
 
 
 @dataclass(frozen=True, eq=False)
-class Life(Brief):
-    """Life at the Gauss points of a study's mechanical mesh. Made by `life`. NaN: a region without ``[fatigue]``.
+class LifeData(Brief):
+    """LifeData at the Gauss points of a study's mechanical mesh. Made by `life`. NaN: a region without ``[fatigue]``.
 
     Parameters
     ----------
@@ -105,7 +105,7 @@ class Life(Brief):
 
     @property
     def shortest(self) -> float:
-        """Life of the element that fails first, km."""
+        """LifeData of the element that fails first, km."""
         return float(self.element_km[self.first])
 
     @functools.cached_property
@@ -126,9 +126,9 @@ def life(
     *,
     temperature: float | None = None,
     plateau: bool = False,
-    result: ResultData | None = None,
+    result: WarmRun | None = None,
     progress: Callable[[float], None] | None = None,
-) -> Life:
+) -> LifeData:
     """Distance until flaws become cracks, at every Gauss point of the mechanical mesh.
 
     The drive is repeated until the damage sum over its load cases is 1 (Miner): 1/L = sum n_i / N_i / distance, n_i the
@@ -183,7 +183,7 @@ def _life(
     cycles: dict[tuple[int, ...], tuple[Any, Array]],
     temperature: float | None,
     plateau: bool,
-) -> Life:
+) -> LifeData:
     body = next(iter(cycles.values()))[0].tyre.body
     rings, phases = body.rings, len(study.card.drive.phases)
     shape = rings.weights.shape
@@ -213,7 +213,7 @@ def _life(
             shares[:, chosen] = by_phase.reshape(phases, *inside)
     regions = tuple(region for region, fatigue in tables.items() if fatigue is not None)
     left_out = tuple(region for region in tables if region not in regions)
-    return Life(
+    return LifeData(
         study, rings, regions, left_out, temperature, plateau, distance, normals=normals, shares=shares, **fields
     )
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.fatigue.life import Life
+from tyrefem.fatigue.life import LifeData
 from tyrefem.geometry.place_names import place
 
 Array = NDArray[np.float64]
@@ -63,7 +63,7 @@ class FailurePlace:
         return dict(parts[:at] + directions + parts[at:])
 
 
-def first_places(life: Life, count: int = COUNT) -> tuple[FailurePlace, ...]:
+def first_places(life: LifeData, count: int = COUNT) -> tuple[FailurePlace, ...]:
     """The places that fail first, the shortest life first; those of one region are at least `APART` from each other."""
     order = [int(e) for e in np.argsort(life.element_km) if np.isfinite(life.element_km[e])]
     chosen: list[tuple[str, Array]] = []
@@ -79,7 +79,7 @@ def first_places(life: Life, count: int = COUNT) -> tuple[FailurePlace, ...]:
     return tuple(places)
 
 
-def _place(life: Life, element: int, region: str, centre: Array) -> FailurePlace:
+def _place(life: LifeData, element: int, region: str, centre: Array) -> FailurePlace:
     at = element, int(life.typical[element])
     normal = life.normals[at] * np.where(life.normals[at][1] < 0, -1.0, 1.0)
     section = life.study.section
@@ -106,7 +106,7 @@ def _kind(shear: float) -> str:
     return "opening" if shear <= OPENING else "opening and shear"
 
 
-def _where(life: Life, region: str, s: float, depth: float) -> str:
+def _where(life: LifeData, region: str, s: float, depth: float) -> str:
     """ "at the edge of belt-1, at the shoulder, ..."; "in the sidewall, ..."."""
     section = life.study.section
     points = life.rings.points[:, life.members(region)].reshape(2, -1).T

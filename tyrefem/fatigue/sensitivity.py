@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from tyrefem.fatigue.life import Life, life
+from tyrefem.fatigue.life import LifeData, life
 from tyrefem.inputs.changes import scaled
 from tyrefem.quantity import parse
 
@@ -39,7 +39,7 @@ class LifeShift:
 
 
 def shifts(
-    before: Life, which: tuple[str, ...] = tuple(SHIFTS), progress: Callable[[float], None] | None = None
+    before: LifeData, which: tuple[str, ...] = tuple(SHIFTS), progress: Callable[[float], None] | None = None
 ) -> tuple[LifeShift, ...]:
     """The shortest life of the study under each change of `SHIFTS` alone, all else as written.
 

@@ -197,10 +197,14 @@ class Sensor(Card):
 
 
 class Output(Card):
-    """Output: interval ``every`` of readings, and number ``fields`` of temperature fields over the drive."""
+    """Output: interval ``every`` of readings, and number ``fields`` of temperature fields over the drive.
+
+    ``life``: every variant of a sweep answers the fatigue life too, which takes longer than its temperatures.
+    """
 
     every: Annotated[float, Unit("s", gt=0)] = 5.0
     fields: Annotated[int, Field(ge=2, le=10_000)] = 13
+    life: bool = False
 
 
 class Numerics(Card):

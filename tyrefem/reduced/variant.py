@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from tyrefem.conduction.field import Peak
 from tyrefem.geometry.wall import inside_mesh
@@ -80,6 +80,10 @@ class Variant:
             return float(s[0]), float(depth[0])
 
         return self.readout.solution.batch.model.node_places.get((self.study.section, peak.point), located)
+
+    def at(self, points: ArrayLike) -> Array:
+        """Temperatures at points (n, 2) in (r, z), m: (n_times, n), degC."""
+        return self.result.at(points)
 
     @functools.cached_property
     def recorded(self) -> dict[str, Array]:

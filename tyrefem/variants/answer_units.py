@@ -10,9 +10,13 @@ WORDS = {
     "contained-air_degC": "contained air at the end",
     "gradient_K_m": "steepest gradient through the carcass",
     "mass_kg": "mass",
+    "life_km": "shortest fatigue life",
+    "life_log10_km": "log10 of the shortest fatigue life in km",
+    "life_place_degC": "temperature of the place that fails first",
     "time_to_limit_s": "time to the given temperature",
 }
 _UNITS = {
+    "_log10_km": "", "_km": "km", "_J_m3": "J/m³",
     "_degC": "°C", "_K_m": "K/m", "_Pa": "Pa", "_kg": "kg", "_J": "J", "_N": "N", "_time_s": "s", "_limit_s": "s",
     "_m": "m",
 }  # fmt: skip

@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from tyrefem.boundaries.rim import LumpedRim
 from tyrefem.errors import InputError, nearest
@@ -191,6 +191,40 @@ def drive(result: FinishedRun, _: float | None) -> Answers:
     }
 
 
+def life_names(study: StudyData) -> list[str]:
+    """Names of the answers of `shortest_life`: none unless ``output.life = true``.
+
+    Raises
+    ------
+    InputError : ``output.life`` in a study whose life cannot be computed.
+    """
+    if not study.card.output.life:
+        return []
+    from tyrefem.fatigue.life import check
+
+    check(study)
+    return ["life_km", "life_log10_km", "life_s_m", "life_place_degC", "life_peak_J_m3"]
+
+
+@answer(life_names)
+def shortest_life(result: FinishedRun, _: float | None) -> Answers:
+    """Fatigue life of the element that fails first, its place along the meridian, temperature and cracking energy."""
+    if not result.study.card.output.life:
+        return {}
+    from tyrefem.fatigue.life import life
+    from tyrefem.fatigue.places import first_places
+
+    (place,) = first_places(life(result.study, result=result), 1)
+    return {
+        "life_km": place.km,
+        "life_log10_km": float(np.log10(place.km)),
+        "life_region": place.region,
+        "life_s_m": place.s,
+        "life_place_degC": place.temperature,
+        "life_peak_J_m3": place.peak,
+    }
+
+
 @answer(lambda _: [TIME_TO])
 def time_to_limit(result: FinishedRun, time_to: float | None) -> Answers:
     """Time at which the hottest node first reaches a temperature, s, linear between readings; NaN: not reached."""
@@ -238,6 +272,10 @@ class FinishedRun(Protocol):
 
     def place_of(self, peak: Peak) -> tuple[float, float]:
         """(s, depth) of a peak, m."""
+        ...
+
+    def at(self, points: ArrayLike) -> Array:
+        """Temperatures at points (n, 2) in (r, z), m: (n_times, n), degC."""
         ...
 
     @property

@@ -1,0 +1,95 @@
+"""`tyrefem life`: how long a study's tyre lasts, and where it fails first."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from tyrefem.cli.common import (
+    CaseOption,
+    ForceOption,
+    JsonOption,
+    QuietOption,
+    SetOption,
+    StudyArgument,
+    print_file,
+    settings,
+    warn,
+)
+from tyrefem.cli.progress import progress
+from tyrefem.errors import InputError
+from tyrefem.output.folder import results_folder
+
+if TYPE_CHECKING:
+    from tyrefem.fatigue.sensitivity import LifeShift
+
+
+def life(
+    study: StudyArgument,
+    temperature: Annotated[
+        str | None, typer.Option(help="One temperature everywhere, e.g. '80 degC': a quick look without a run.")
+    ] = None,
+    plateau: Annotated[
+        bool, typer.Option("--plateau", help="Each phase at the temperatures of its end, not over time.")
+    ] = False,
+    sensitivity: Annotated[
+        bool,
+        typer.Option(help="Compute the shortest life for other speed, load, pressure and ambient: four more runs."),
+    ] = True,
+    pictures: Annotated[bool, typer.Option(help="Draw the PNG map.")] = True,
+    vtk: Annotated[bool, typer.Option(help="Write the map for ParaView, life.vtu.")] = True,
+    out: Annotated[Path | None, typer.Option("--out", help="Folder; default: results/STUDY-life.")] = None,
+    force: ForceOption = False,
+    quiet: QuietOption = False,
+    as_json: JsonOption = False,
+    changes: SetOption = None,
+    case: CaseOption = None,
+) -> None:
+    """Distance until small flaws become cracks, by the strain cycle and the temperatures of a run; the places that
+    fail first."""
+    from tyrefem.api import study as load
+    from tyrefem.fatigue.life import check
+    from tyrefem.fatigue.life import life as life_of
+    from tyrefem.fatigue.sensitivity import SHIFTS, shifts
+    from tyrefem.reports.life import FILES, words, write_files
+
+    given = None if temperature is None else _temperature(temperature)
+    if given is not None and plateau:
+        raise InputError("--temperature has no phases that warm up: leave out --plateau", field="--plateau")
+    loaded = load(study, settings(changes), case)
+    check(loaded)
+    warn(loaded.warnings)
+    with results_folder(out or Path("results") / f"{loaded.name}-life", "life", FILES, force=force) as folder:
+        with progress(f"{loaded.name}: life", loaded.card.drive.end, quiet=quiet or as_json) as step:
+            computed = life_of(loaded, temperature=given, plateau=plateau, progress=step)
+        write_files(computed, folder, pictures=pictures, vtk=vtk)
+        moved: tuple[LifeShift, ...] = ()
+        if sensitivity:
+            with progress(f"{loaded.name}: {', '.join(SHIFTS)}", quiet=quiet or as_json):
+                moved = shifts(computed)
+            write_files(computed, folder, moved, pictures=False, vtk=False)
+    if as_json:
+        print_file(folder / "summary.json")
+    else:
+        typer.echo(words(computed, moved))
+        typer.echo(f"results in {folder}")
+
+
+def _temperature(text: str) -> float:
+    from tyrefem.quantity import Unit
+
+    try:
+        return Unit("degC", le=300)(text)
+    except InputError as error:
+        raise error.within(field="--temperature") from None
+
+
+#: Place among the commands.
+ORDER = 47
+
+
+def register(app: typer.Typer) -> None:
+    """Add the command."""
+    app.command()(life)
