@@ -13,7 +13,9 @@ ROUND_OFF = 1e-10
 PATIENCE = 6
 
 
-def contact_forces(compliance: Array, gaps: Array, start: Flags | None = None) -> tuple[Array, Flags]:
+def contact_forces(
+    compliance: Array, gaps: Array, start: Flags | None = None, *, symmetric: bool = True
+) -> tuple[Array, Flags]:
     """Forces f >= 0 that leave no penetration w = gaps + C f >= 0, with f w = 0.
 
     Block pivoting (Portugal, Judice and Vicente 1994): all tensile contacts are opened and all penetrating points are
@@ -21,7 +23,7 @@ def contact_forces(compliance: Array, gaps: Array, start: Flags | None = None) -
 
     Parameters
     ----------
-    compliance : (n, n) C, symmetric positive definite, m/N.
+    compliance : (n, n) C, positive definite, m/N. ``symmetric``: that of a body without loss.
     gaps : (n,) at zero force, negative where the bodies overlap, m.
     start : initial set of contacts.
 
@@ -44,7 +46,8 @@ def contact_forces(compliance: Array, gaps: Array, start: Flags | None = None) -
     for _ in range(200 + 20 * len(gaps)):
         forces = np.zeros_like(gaps)
         index = np.flatnonzero(closed)
-        forces[index] = _positive_solve(compliance[np.ix_(index, index)], -gaps[index])
+        matrix = compliance[np.ix_(index, index)]
+        forces[index] = _positive_solve(matrix, -gaps[index]) if symmetric else np.linalg.solve(matrix, -gaps[index])
         left = gaps + compliance[:, index] @ forces[index]
         pulls = closed & (forces < -ROUND_OFF * np.abs(forces).max(initial=0.0))
         wrong = pulls | (~closed & (left < -ROUND_OFF * scale))

@@ -154,10 +154,14 @@ class StrainHarmonics:
         largest = np.zeros(self.elements.radii.shape)
         storage = np.moveaxis(self.footprint.pressing.state.storage, (0, 1), (-2, -1))
         away = self.strain(np.array([np.pi]))[..., 0]
-        for t in np.linspace(0, np.pi, count):
+        for t in self.cycle_angles(count):
             e = np.moveaxis(self.strain(np.array([t]))[..., 0] - away, 0, -1)[..., None]
             largest = np.maximum(largest, 0.5 * ((storage @ e) * e).sum(axis=(-2, -1)))
         return largest
+
+    def cycle_angles(self, count: int) -> Array:
+        """(count,) angles of a whole cycle, rad: one side of the footprint, as the other is alike."""
+        return np.linspace(0, np.pi, count)
 
     def coarseness(self, angles: Array | None = None) -> Array:
         """(n_elements,) error of the linearised strain against Green's, by element: root of the ratio of

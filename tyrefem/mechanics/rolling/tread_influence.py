@@ -133,8 +133,9 @@ class TreadInfluence(Brief):
         """(3, m, 3, m) compliance of the section's tread nodes; zero at components that are held."""
         dofs = (COMPONENTS * self.tread.nodes + np.arange(COMPONENTS)[:, None]).ravel()
         free = np.flatnonzero(~np.isin(dofs, harmonics.held))
-        compliance = np.zeros((len(dofs), len(dofs)))
-        compliance[np.ix_(free, free)] = harmonics.compliance(n, dofs[free])
+        at_free = harmonics.compliance(n, dofs[free])
+        compliance = np.zeros((len(dofs), len(dofs)), dtype=at_free.dtype)
+        compliance[np.ix_(free, free)] = at_free
         shape = (COMPONENTS, len(self.tread.nodes))
         return compliance.reshape(*shape, *shape)
 
@@ -163,5 +164,6 @@ class TreadInfluence(Brief):
             for b in range(COMPONENTS):
                 wave = waves * turn[a, b]
                 block = stacked[:, a, :, b].reshape(len(stacked), -1)
-                kernel[:, a, :, b] = (wave.real @ block).reshape(-1, points, points)
+                sums = (wave @ block).real if np.iscomplexobj(block) else wave.real @ block
+                kernel[:, a, :, b] = sums.reshape(-1, points, points)
         return kernel
