@@ -117,7 +117,7 @@ class RollingTyre(TyreOnRoad):
         side = math.ceil(BEYOND * half_angle / math.pi * harmonics) + 3
         while side < harmonics:
             rolling = self._on(replace(self._grid(harmonics, side), shift=shift), deflection)
-            touching = (rolling.forces.reshape(len(rolling.grid.angles), -1) > 0).any(axis=1)
+            touching = rolling.forces.reshape(len(rolling.grid.angles), -1).max(axis=1) > 0
             if not touching.any():
                 raise InputError("the tyre does not touch the road", field="deflection")
             if not (touching[0] or touching[-1]):

@@ -15,7 +15,6 @@ from tyrefem.errors import InputError
 from tyrefem.mechanics.footprint.harmonics import SYMMETRIC, Harmonics
 
 Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 Indices = NDArray[np.int64]
 
 
@@ -70,7 +69,7 @@ class LossyHarmonics(Harmonics):
         """K_n - i K''_n, sparse, N/m per radian."""
         return (super().stiffness(n) - 1j * self.loss(n)).tocsc()
 
-    def solve(self, n: float, loads: Complex) -> Complex:
+    def solve(self, n: float, loads: Any) -> Any:
         """Complex amplitudes (n_dofs, k), m, under loads (n_dofs, k), N per radian.
 
         Raises
