@@ -15,7 +15,7 @@ from tyrefem.mechanics.footprint.example_tyre import PlainTyre
 from tyrefem.mechanics.footprint.loss import RevolutionLoss
 from tyrefem.mechanics.footprint.road import Road
 from tyrefem.mechanics.footprint.strain_harmonics import StrainHarmonics
-from tyrefem.mechanics.rolling.free_rolling import RollingTyre, rolling_resistance
+from tyrefem.mechanics.rolling.free_rolling import LossyTyre, rolling_resistance
 from tyrefem.mechanics.rolling.lagging_strains import LaggingFootprint, LaggingStrains
 from tyrefem.mechanics.rolling.lossy_harmonics import LossyHarmonics
 from tyrefem.mechanics.solid.body import Prestressed
@@ -32,14 +32,14 @@ def state(half: bool = True, spin: float = 0.0) -> Prestressed:
 
 def rolling(
     tangent: float, *, spin: float = 0.0, drum: float = math.inf, half: bool = True, rising: float = 0.0
-) -> RollingTyre:
+) -> LossyTyre:
     """A tyre whose tan delta rises with frequency^``rising`` from its value at 10 Hz."""
     turning = state(half, spin)
     count = len(turning.bulk)
     lossy = LossyHarmonics(
         turning, angular_speed=spin or 20.0, tangents=lambda f: np.full(count, tangent * (f / 10.0) ** rising)
     )
-    return RollingTyre(turning, Road(drum), lossy)
+    return LossyTyre(turning, Road(drum), lossy)
 
 
 @pytest.mark.parametrize(
@@ -129,7 +129,7 @@ def test_the_other_way_round() -> None:
     """K'' < 0 (material that runs the other way) moves the pressure back by as much."""
     tyre = rolling(0.2)
     back = replace(tyre.harmonics, tangents=lambda f: np.full(len(tyre.state.bulk), -0.2))
-    forwards, backwards = (RollingTyre(tyre.state, lossy=lossy) for lossy in (tyre.harmonics, back))
+    forwards, backwards = (LossyTyre(tyre.state, lossy=lossy) for lossy in (tyre.harmonics, back))
     first, second = (turning.at_deflection(DEFLECTION, 36) for turning in (forwards, backwards))
     assert second.offset == pytest.approx(-first.offset, rel=1e-9)
     assert second.load == pytest.approx(first.load, rel=1e-9)

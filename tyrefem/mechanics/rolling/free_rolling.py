@@ -65,7 +65,7 @@ class ShiftedGrid(RollingGrid):
 
 
 @dataclass(frozen=True, eq=False)
-class RollingTyre(TyreOnRoad):
+class LossyTyre(TyreOnRoad):
     """A tyre on its road that turns with loss, and inertia if its state has it. Material runs to smaller angles.
 
     Parameters
@@ -157,7 +157,7 @@ class RollingTyre(TyreOnRoad):
 
 @dataclass(frozen=True, eq=False)
 class FreeRolling(Brief):
-    """A tyre with loss that rolls without friction. Made by `RollingTyre`.
+    """A tyre with loss that rolls without friction. Made by `LossyTyre`.
 
     Parameters
     ----------
@@ -165,7 +165,7 @@ class FreeRolling(Brief):
     forces : (k,) contact forces, N, of one side of a half section. normals : (k, 3) into the road.
     """
 
-    pressing: RollingTyre
+    pressing: LossyTyre
     grid: RollingGrid
     deflection: float
     forces: Array
@@ -276,7 +276,7 @@ class FreeRolling(Brief):
 
 
 @dataclass(frozen=True, eq=False)
-class RollingResistance(Brief):
+class FreeRollingResistance(Brief):
     """Rolling resistance of a freely rolling tyre, from the offset of its pressure and from the loss of its rubber.
 
     The ends of the contact lie between two angles. What that does to the torque changes sign with the place of the
@@ -334,17 +334,17 @@ class RollingResistance(Brief):
 
 
 def rolling_resistance(
-    tyre: RollingTyre, harmonics: int, deflection: float, load: float | None = None
-) -> RollingResistance:
-    """`RollingResistance` at a deflection, m, or under a load, N, near it.
+    tyre: LossyTyre, harmonics: int, deflection: float, load: float | None = None
+) -> FreeRollingResistance:
+    """`FreeRollingResistance` at a deflection, m, or under a load, N, near it.
 
     >>> from tyrefem.mechanics.footprint.example_tyre import PlainTyre
     >>> state = PlainTyre().state(along=6)
     >>> lossy = LossyHarmonics(state, angular_speed=10.0, tangents=lambda frequency: np.full(len(state.bulk), 0.1))
-    >>> resistance = rolling_resistance(RollingTyre(state, lossy=lossy), 120, 0.012)
+    >>> resistance = rolling_resistance(LossyTyre(state, lossy=lossy), 120, 0.012)
     >>> abs(resistance.balance) < 0.015, 2e-4 < resistance.offset < 2e-3
     (True, True)
     """
     if load is not None:
         deflection = tyre.at_load(load, harmonics, deflection).deflection
-    return RollingResistance(tuple(tyre.at_deflection(deflection, harmonics, shift) for shift in SHIFTS))
+    return FreeRollingResistance(tuple(tyre.at_deflection(deflection, harmonics, shift) for shift in SHIFTS))
