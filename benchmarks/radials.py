@@ -289,6 +289,15 @@ def estimates() -> None:
     write("work-estimates.csv", columns("work-estimates.csv"), rows, nothing)
 
 
+def peak_memory() -> float:
+    """Largest memory of this process, MiB (Linux: resource's number is that of the parent process if it was larger)."""
+    status = Path("/proc/self/status")
+    if not status.is_file():
+        return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+    line = next(line for line in status.read_text(encoding="utf-8").splitlines() if line.startswith("VmHWM:"))
+    return int(line.split()[1]) / 1024
+
+
 def measure(name: str) -> None:
     """One row of the estimates, as JSON."""
     import pandas  # noqa: F401 - the memory of libraries is not the run's
@@ -304,9 +313,9 @@ def measure(name: str) -> None:
         study = campaign.case_study(campaign.cases[0])
     estimate, total = RunEstimate.of(study), RunEstimate.of(study).total
     unknowns = operators_of(study.mesh().mesh, study.card.mesh.element).size
-    peak, began = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss, time.process_time()
+    peak, began = peak_memory(), time.process_time()
     study.run()
-    memory = (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - peak) / 1024
+    memory = peak_memory() - peak
     print(json.dumps([
         words, f"{estimate.unknowns:.0f}", unknowns, f"{total.memory / 2**20:.0f}", f"{memory:.0f}",
         f"{total.time:.2g}", f"{time.process_time() - began:.2g}",
