@@ -13,6 +13,7 @@ from tyrefem.brief import Brief
 from tyrefem.mechanics.footprint.elements import COMPONENTS
 from tyrefem.mechanics.footprint.road import Road
 from tyrefem.mechanics.rolling.contact_body import NOWHERE
+from tyrefem.mechanics.rolling.pressed_shape import PressedShape
 from tyrefem.mechanics.rolling.tread_influence import TreadInfluence
 
 Array = NDArray[np.float64]
@@ -27,6 +28,8 @@ class RollingGrid(Brief):
 
     Axes (x forward, y down, z left) are the wheel's. Material runs in at the front (positive angles), so a point's
     material was at the next larger angle a step before. The largest angle cannot touch.
+
+    ``shape``: the pressed tyre from which forces move the points; None: the inflated tyre.
     """
 
     influence: TreadInfluence
@@ -34,6 +37,7 @@ class RollingGrid(Brief):
     harmonics: int
     first: int
     last: int
+    shape: PressedShape | None = None
 
     @property
     def step(self) -> float:
@@ -73,7 +77,7 @@ class RollingGrid(Brief):
             return self
         furthest = self.harmonics - 1
         first, last = max(low - ANGLES_BEYOND, -furthest), min(high + ANGLES_BEYOND, furthest)
-        return RollingGrid(self.influence, self.road, self.harmonics, first, last)
+        return RollingGrid(self.influence, self.road, self.harmonics, first, last, self.shape)
 
     @functools.cached_property
     def areas(self) -> Array:
@@ -91,14 +95,22 @@ class RollingGrid(Brief):
         return axes
 
     @functools.cached_property
+    def offsets(self) -> Array | float:
+        """(k, 3) what the pressed shape adds to the inflated one, (x, y, z), m."""
+        if self.shape is None:
+            return 0.0
+        added = self.shape.offsets(self.influence, self.harmonics, self.angles, self.kernel)
+        return np.asarray(np.einsum("jcx,jcp->jpx", self.wheel_axes, added).reshape(-1, 3))
+
+    @functools.cached_property
     def free_places(self) -> Array:
-        """(k, 3) places (x, y, z) of the free tread, averaged with the hats by two points, m."""
+        """(k, 3) places (x, y, z) of the tread without forces, averaged with the hats by two points, m."""
         r, z = self.influence.places
         flat = np.cos(self.step / math.sqrt(6))
         axes = self.wheel_axes[:, 0]
         places = flat * axes[:, None, :] * r[:, None]
         places[..., 2] = z
-        return np.asarray(places.reshape(-1, 3))
+        return np.asarray(places.reshape(-1, 3) + self.offsets)
 
     def gaps(self, moved: Array, distance: float) -> tuple[Array, Array]:
         """Gaps (k,), m, averaged with the hats, and unit vectors (k, 3) into the road, for displacements (k, 3)."""
@@ -110,7 +122,7 @@ class RollingGrid(Brief):
             radius = np.tile(r, len(self.angles))
             free.append(np.stack([radius * np.sin(angle), radius * np.cos(angle), np.tile(z, len(self.angles))]))
         before_centre, centre, after_centre = (self.road.gaps(places, distance)[0] for places in free)
-        gaps, normals = self.road.gaps(free[1] + moved.T, distance)
+        gaps, normals = self.road.gaps(free[1] + (moved + self.offsets).T, distance)
         return gaps + (before_centre + after_centre) / 2 - centre, normals.T
 
     def road_axes(self, normals: Array) -> Array:

@@ -17,6 +17,7 @@ from tyrefem.mechanics.footprint.contact import Pressing
 from tyrefem.mechanics.footprint.road import Road
 from tyrefem.mechanics.rolling.contact_body import ContactBody
 from tyrefem.mechanics.rolling.friction import Control, RollingContact
+from tyrefem.mechanics.rolling.pressed_shape import PressedShape
 from tyrefem.mechanics.rolling.rolled import TORQUE, RolledTyre
 from tyrefem.mechanics.rolling.rolling_grid import ANGLES_BEYOND, RollingGrid
 from tyrefem.mechanics.rolling.rolling_motion import RollingMotion
@@ -62,12 +63,14 @@ class SteadyRolling(Brief):
     pressing : the inflated tyre on its road, without camber if it is a half section.
     camber : rad; positive: the side z > 0 moves down.
     friction : coefficient, or its law of sliding speed and pressure.
+    shape : of the tyre pressed in large motion, from which friction moves it; None: of the inflated tyre.
     """
 
     pressing: Pressing
     camber: float = 0.0
     friction: float | FrictionLaw = 1.0
     influence: TreadInfluence | None = None
+    shape: PressedShape | None = None
 
     def __post_init__(self) -> None:
         if isinstance(self.friction, int | float) and not 0 <= self.friction < math.inf:
@@ -144,7 +147,7 @@ class SteadyRolling(Brief):
         around = 1.0 / (1.0 + 2 * self.reach / self.road.drum_diameter)
         half_angle = math.acos(max(1 - deflection * around / self.reach, -0.5))
         side = min(math.ceil(1.1 * half_angle / math.pi * harmonics) + 1, harmonics - 1)
-        grid = RollingGrid(self.points, self.road, harmonics, -side, side)
+        grid = RollingGrid(self.points, self.road, harmonics, -side, side, self.shape)
         gaps, normals = grid.gaps(np.zeros((grid.n_points, 3)), self.reach - deflection)
         _, closed = contact_forces(grid.normal_compliance(normals), gaps)
         if not closed.any():

@@ -1,0 +1,74 @@
+"""Rolling from the shape of a footprint: without friction it is that footprint."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from tyrefem.mechanics.footprint.contact import Pressing
+from tyrefem.mechanics.footprint.example_tyre import PlainTyre
+from tyrefem.mechanics.footprint.footprint import Footprint
+from tyrefem.mechanics.footprint.harmonic_balance import Balance
+from tyrefem.mechanics.footprint.road import Road
+from tyrefem.mechanics.rolling.pressed_shape import PressedShape
+from tyrefem.mechanics.rolling.rolled import RolledTyre
+from tyrefem.mechanics.rolling.rolling_motion import RollingMotion
+from tyrefem.mechanics.rolling.steady_rolling import RollingLoads, SteadyRolling
+
+DEFLECTION, HARMONICS = 0.006, 24
+
+
+def pressed(drum: float) -> Pressing:
+    return Pressing(PlainTyre().state(along=6), Road(drum))
+
+
+def rolled(pressing: Pressing, footprint: Footprint, friction: float = 0.0) -> RolledTyre:
+    tyre = SteadyRolling(pressing, friction=friction, shape=PressedShape(footprint))
+    loads = RollingLoads(deflection=DEFLECTION, travel=footprint.rolling_radius)
+    return tyre.roll(RollingMotion(), loads, HARMONICS)
+
+
+def pressure_of(state: RolledTyre, footprint: Footprint) -> tuple[np.ndarray, np.ndarray]:
+    """Contact pressure of one side of the wheel and of the tread, as rolled and as pressed, Pa."""
+    middle, across = -state.grid.first, footprint.pressure.shape[1]
+    ours = state.pressure[middle:, -across:]
+    count = min(len(ours), len(footprint.pressure))
+    return ours[:count], footprint.pressure[:count]
+
+
+@pytest.mark.parametrize("drum", [math.inf, 1.0])
+def test_small_motion_adds_nothing(drum: float) -> None:
+    pressing = pressed(drum)
+    footprint = pressing.at_deflection(DEFLECTION, HARMONICS)
+    state = rolled(pressing, footprint)
+    assert np.abs(state.grid.offsets).max() < 1e-12
+    ours, theirs = pressure_of(state, footprint)
+    assert ours == pytest.approx(theirs, abs=1e-9 * theirs.max())
+
+
+@pytest.mark.parametrize("drum", [math.inf, 1.0])
+def test_without_friction_it_is_the_footprint_in_large_motion(drum: float) -> None:
+    pressing = pressed(drum)
+    footprint = Balance(pressing, 12, HARMONICS, tolerance=1e-4).at_deflection(DEFLECTION)
+    linear = pressing.at_deflection(DEFLECTION, HARMONICS)
+    state = rolled(pressing, footprint)
+    assert state.force[2] == pytest.approx(footprint.load, rel=1e-3)
+    assert abs(linear.load - footprint.load) > 0.05 * footprint.load
+    ours, theirs = pressure_of(state, footprint)
+    assert ours == pytest.approx(theirs, abs=5e-3 * theirs.max())
+
+
+def test_friction_acts_from_that_shape() -> None:
+    pressing = pressed(math.inf)
+    footprint = Balance(pressing, 12, HARMONICS, tolerance=1e-4).at_deflection(DEFLECTION)
+    tyre = SteadyRolling(pressing, friction=0.8, shape=PressedShape(footprint))
+    loads = RollingLoads(load=footprint.load, torque=0.0)
+    guess = (footprint.deflection, footprint.rolling_radius)
+    left = tyre.roll(RollingMotion(0.03), loads, HARMONICS, guess=guess)
+    right = tyre.roll(RollingMotion(-0.03), loads, HARMONICS, guess=guess)
+    assert left.force[1] < -0.1 * footprint.load
+    assert right.force[1] == pytest.approx(-left.force[1], rel=1e-6)
+    assert right.moment[2] == pytest.approx(-left.moment[2], rel=1e-6)
+    assert np.hypot(*left.contact.forces[:, 1:].T) <= pytest.approx(0.8 * left.contact.forces[:, 0], abs=1e-6)
