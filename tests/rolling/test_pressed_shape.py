@@ -71,4 +71,5 @@ def test_friction_acts_from_that_shape() -> None:
     assert left.force[1] < -0.1 * footprint.load
     assert right.force[1] == pytest.approx(-left.force[1], rel=1e-6)
     assert right.moment[2] == pytest.approx(-left.moment[2], rel=1e-6)
-    assert np.hypot(*left.contact.forces[:, 1:].T) <= pytest.approx(0.8 * left.contact.forces[:, 0], abs=1e-6)
+    traction, limit = np.hypot(*left.contact.forces[:, 1:].T), 0.8 * left.contact.forces[:, 0]
+    assert (traction <= limit + 1e-6).all()

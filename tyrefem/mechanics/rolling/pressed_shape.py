@@ -65,7 +65,10 @@ class PressedShape(Brief):
         footprint, (r, z) = self.footprint, influence.places
         nodes, _ = influence.source
         pressure = np.stack(
-            [np.interp(np.abs(angles), footprint.grid.angles, footprint.pressure[:, node], right=0.0) for node in nodes],
+            [
+                np.interp(np.abs(angles), footprint.grid.angles, footprint.pressure[:, node], right=0.0)
+                for node in nodes
+            ],
             axis=1,
         )
         radius = r + displacements[:, 0]
