@@ -18,6 +18,8 @@ from tyrefem.heating_test import identification
 from tyrefem.inputs import study as studies
 from tyrefem.mechanics.footprint import natural_frequencies as vibrations
 from tyrefem.mechanics.footprint import press as presses
+from tyrefem.mechanics.rolling import roll as rolls
+from tyrefem.mechanics.rolling import slip_curve as slip_curves
 from tyrefem.mechanics.strain_laws import strain_law
 from tyrefem.plan import steps as test_plan
 from tyrefem.simulation import result
@@ -269,6 +271,38 @@ class Life(lives.LifeData):
         return Path(folder)
 
 
+class RollingWheel(rolls.Rolled):
+    """A study's tyre in steady rolling with friction, with `save`."""
+
+    def save(self, folder: str | Path, *, pictures: bool = True, vtk: bool = True) -> Path:
+        """Write ``roll.json``, ``contact.csv``, ``rings.csv``, ``contact.vtu``, pictures; return the folder.
+
+        Raises
+        ------
+        InputError : the folder cannot be written.
+        """
+        from tyrefem.reports.roll import write_files
+
+        write_files(self, Path(folder), pictures=pictures, vtk=vtk)
+        return Path(folder)
+
+
+class ForcesOverSlip(slip_curves.SlipCurve):
+    """Forces of a study's tyre over slip angle or slip, with `save`."""
+
+    def save(self, folder: str | Path, *, pictures: bool = True) -> Path:
+        """Write ``roll.json``, ``curve.csv``, and with pictures ``curve.png``; return the folder.
+
+        Raises
+        ------
+        InputError : the folder cannot be written.
+        """
+        from tyrefem.reports.roll import write_curve
+
+        write_curve(self, Path(folder), pictures=pictures)
+        return Path(folder)
+
+
 class Study(studies.StudyData):
     """A study, with methods to run, compare, diagnose and sweep it. `study` makes it; `replace` changes it.
 
@@ -345,6 +379,25 @@ class Study(studies.StudyData):
         ('linear', True)
         """
         return with_verbs(LoadedTyre, presses.press(self, **options))
+
+    def roll(self, **options: Any) -> RollingWheel:
+        """Roll the tyre steadily with friction: forces, moments, slip, friction power by ring of the tread.
+
+        Options, in SI: ``slip_angle``, ``camber``, ``turn_slip``; ``slip``, ``torque`` or ``axle_force``; ``friction``,
+        ``speed``, and those of `press`. See `tyrefem.mechanics.rolling.roll.roll`.
+
+        >>> rolled = study("nasa-22x5.5-8pr", {"mesh.size": "12 mm"}).roll(slip=0.01)
+        >>> rolled.state.force[0] > 0 and rolled.state.torque > 0
+        True
+        """
+        return with_verbs(RollingWheel, rolls.roll(self, **options))
+
+    def slip_curve(self, **options: Any) -> ForcesOverSlip:
+        """Forces and moments over several ``slip_angle`` or several ``slip``, with stiffness, trail and peak.
+
+        Options as in `roll`; see `tyrefem.mechanics.rolling.slip_curve.slip_curve`.
+        """
+        return with_verbs(ForcesOverSlip, slip_curves.slip_curve(self, **options))
 
     def natural_frequencies(
         self, harmonics: Iterable[int] = vibrations.HARMONICS, count: int = vibrations.COUNT, **options: Any

@@ -1,0 +1,208 @@
+"""Rolling with friction: closed forms, power balance, speed, and the measured 205/60R15 over its loads.
+
+    python benchmarks/rolling.py [--closed-forms] [--measured] [--speed] [--pictures]
+
+Writes docs/evidence/tables/rolling-closed-forms.csv and rolling-measured.csv. Nothing is fitted.
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import math
+import os
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+import numpy as np
+
+import tyrefem as tf
+from tyrefem.mechanics.footprint.contact import Pressing
+from tyrefem.mechanics.footprint.example_tyre import PlainTyre
+from tyrefem.mechanics.footprint.road import Road
+from tyrefem.mechanics.rolling.example_bodies import bristles, half_plane, string
+from tyrefem.mechanics.rolling.friction import Control, RollingContact
+from tyrefem.mechanics.rolling.roll import settled, wheel_on_road
+from tyrefem.mechanics.rolling.rolling_motion import RollingMotion
+from tyrefem.mechanics.rolling.slip_curve import slip_stiffness
+from tyrefem.mechanics.rolling.steady_rolling import RollingLoads, SteadyRolling
+
+ROOT = Path(__file__).resolve().parents[1]
+TABLES = ROOT / "docs" / "evidence" / "tables"
+PICTURES = ROOT / "docs" / "pictures"
+STUDY = ROOT / "studies" / "measured-205-60r15" / "study.toml"
+MEASURED = STUDY.parent / "summary.csv"
+FRICTION = 0.3
+#: Drum diameter, m; camber and slip angle, deg; torque, N m; path curvature, 1/m, of the power balances.
+BALANCES = (
+    (math.inf, 0, 1, 0, 0), (math.inf, 0, 3, 0, 0), (math.inf, 0, 8, 0, 0), (math.inf, 2, 2, 0, 0),
+    (math.inf, -4, 4, 0, 0), (math.inf, 0, 0, 300, 0), (math.inf, 0, 2, -400, 0), (math.inf, 3, 6, 200, 0.02),
+    (1.7, 0, 3, 0, 0), (1.7, 2, 4, -300, 0),
+)  # fmt: skip
+
+
+def rigid(count: int, slip: float, component: int) -> Any:
+    """Rigid slip of a step at all points."""
+    slips = np.zeros((count, 2))
+    slips[:, component] = slip
+    return slips
+
+
+def carter() -> Iterator[tuple[str, float, float]]:
+    """Case, computed, exact: force over mu times load, for the creeps that Carter gives."""
+    count, radius = 401, 50.0
+    step = 2.4 / count
+    x = (np.arange(count) - (count - 1) / 2) * step
+    load, arms = np.pi / (4 * radius), np.zeros((count, 3))
+    arms[:, 0] = 1.0
+    sought = Control(-np.ones(count), np.zeros((count, 2)), arms, load)
+    body = half_plane(count, step, 1.0)
+    for share in (0.25, 0.5, 0.75, 0.9, 0.99, 1.0):
+        creep = FRICTION / radius * (1 - math.sqrt(1 - share)) * (1.2 if share == 1.0 else 1.0)
+        contact = RollingContact(
+            body, x**2 / (2 * radius), rigid(count, creep * step, 0), np.full(count, FRICTION), [sought]
+        )
+        forces = contact.solve(values=[1 / radius])
+        yield f"Carter, Q/(mu P) = {share:g}", -float(forces.forces[:, 1].sum()) / (FRICTION * load), share
+        if share < 1:
+            sticks, touches = (forces.states == 1).sum(), (forces.states > 0).sum()
+            yield f"Carter, stick over contact, Q/(mu P) = {share:g}", float(sticks / touches), math.sqrt(1 - share)
+
+
+def brush() -> Iterator[tuple[str, float, float]]:
+    """Side force and moment of bristles."""
+    count, normal, tangential = 801, 1e-3, 2e-3
+    step = 2.2 / count
+    x = (np.arange(count) - (count - 1) / 2) * step
+    gaps = (x**2 - 1) / 2
+    most = FRICTION * float((np.maximum(-gaps, 0) / normal).sum())
+    body = bristles(count, normal, tangential)
+    for s in (0.1, 0.3, 0.5, 0.7, 0.9):
+        creep = 3 * most * s * tangential * step / 2
+        problem = RollingContact(body, gaps, rigid(count, creep * step, 1), np.full(count, FRICTION))
+        side = -problem.solve().forces[:, 2]
+        yield f"brush, F/(mu Fz), s = {s:g}", float(side.sum()) / most, 3 * s - 3 * s**2 + s**3
+        yield f"brush, Mz/(mu Fz a), s = {s:g}", -float((x * side).sum()) / most, s * (1 - s) ** 3
+
+
+def belt() -> Iterator[tuple[str, float, float]]:
+    """Cornering and aligning stiffness of a string on an elastic bed."""
+    count, tension, bed, angle = 601, 2.0, 3.0, 1e-3
+    step, sigma = 3.0 / count, math.sqrt(tension / bed)
+    x = (np.arange(count) - (count - 1) / 2) * step
+    body = string(count, step, tension, bed, 1e-3)
+    problem = RollingContact(
+        body, np.where(np.abs(x) < 1, -1.0, 1.0), rigid(count, angle * step, 1), np.full(count, 1e6)
+    )
+    side = -problem.solve().forces[:, 2]
+    yield "string, cornering stiffness", float(side.sum()) / angle, 2 * bed * (sigma + 1) ** 2
+    yield "string, aligning stiffness", -float((x * side).sum()) / angle, 2 * bed * (sigma * (sigma + 1) + 1 / 3)
+
+
+def balances() -> Iterator[tuple[str, float, float]]:
+    """Power of the axle and of friction, W, of the plain tyre."""
+    for drum, camber, angle, torque, curvature in BALANCES:
+        tyre = SteadyRolling(Pressing(PlainTyre().state(along=8), Road(drum)), math.radians(camber), 1.0)
+        motion = RollingMotion(math.radians(angle), curvature, speed=20.0)
+        rolled = tyre.roll(motion, RollingLoads(load=3000.0, torque=torque), 120, guess=(0.02, 0.314))
+        road = "flat" if math.isinf(drum) else f"drum {drum:g} m"
+        name = f"power, W: {road}, camber {camber}, slip angle {angle} deg, torque {torque} N m, path {curvature:g} 1/m"
+        yield name, rolled.friction_power, rolled.lost_power
+
+
+def closed_forms() -> None:
+    """Write the table of deviations."""
+    rows = [row for part in (carter, brush, belt, balances) for row in part()]
+    with (TABLES / "rolling-closed-forms.csv").open("w", encoding="utf-8", newline="") as stream:
+        table = csv.writer(stream, lineterminator="\n")
+        table.writerow(["case", "computed", "exact", "deviation [%]"])
+        for name, computed, exact in rows:
+            deviation = 100 * (computed / exact - 1)
+            table.writerow([name, f"{computed:.6g}", f"{exact:.6g}", f"{deviation:+.2f}"])
+            print(f"{name:75} {computed:12.6g} {exact:12.6g} {deviation:+7.2f} %", flush=True)
+
+
+def measured() -> None:
+    """Write cornering stiffness, slip stiffness and trail over load beside the measured ones."""
+    with MEASURED.open(encoding="utf-8") as stream:
+        lines = [line for line in stream if not line.startswith("#")]
+    rows = list(csv.DictReader(lines))
+    names = {
+        "cornering_stiffness [kN/rad]": "cornering stiffness [kN/rad]",
+        "longitudinal_slip_stiffness [kN]": "slip stiffness [kN]",
+        "pneumatic_trail [mm]": "trail [mm]",
+        "effective_rolling_radius [mm]": "rolling radius [mm]",
+    }
+    with (TABLES / "rolling-measured.csv").open("w", encoding="utf-8", newline="") as stream:
+        table = csv.writer(stream, lineterminator="\n")
+        table.writerow(["load [N]", "friction", "quantity", "measured", "computed", "deviation [%]", "harmonics"])
+        for line in rows:
+            load = float(line["load [N]"])
+            for friction in (1.0, 0.8, 1.2) if load == 4000 else (1.0,):
+                wheel = wheel_on_road(tf.study(STUDY), load=load, friction=friction)
+                rolled = settled(wheel, RollingMotion(math.radians(1.0)), {"torque": 0.0}, 0.05)
+                stiffness = slip_stiffness(wheel, rolled.state.harmonics)
+                values = (
+                    stiffness.cornering / 1e3,
+                    stiffness.slip / 1e3,
+                    1e3 * stiffness.trail,
+                    1e3 * rolled.rolling_radius,
+                )
+                for (key, name), value in zip(names.items(), values, strict=True):
+                    known = float(line[key])
+                    words = [f"{load:g}", f"{friction:g}", name, f"{known:g}", f"{value:.4g}",
+                             f"{100 * (value / known - 1):+.1f}", str(rolled.state.harmonics)]  # fmt: skip
+                    table.writerow(words)
+                    print(*words, flush=True)
+
+
+def speed() -> None:
+    """Print processor seconds of a footprint, a point and a curve of 20 points."""
+    study = tf.study("passenger-205-55r16", {"mesh.size": "5 mm"})
+    start = time.process_time()
+    wheel = wheel_on_road(study, load=4000.0)
+    nodes = wheel.pressed.tyre.body.rings.n_nodes
+    print(f"{nodes} nodes, inflated and pressed: {time.process_time() - start:.1f} s")
+    for harmonics in (40, 80):
+        start = time.process_time()
+        near = wheel.free(harmonics)
+        print(
+            f"{harmonics} harmonics, compliance in three directions and free rolling: {time.process_time() - start:.1f} s"
+        )
+        start = time.process_time()
+        for angle in np.radians(np.linspace(0.5, 10, 20)):
+            near = wheel.roll(RollingMotion(float(angle), speed=20.0), {"torque": 0.0}, harmonics, near)
+        print(f"{harmonics} harmonics, 20 points: {time.process_time() - start:.1f} s")
+
+
+def pictures() -> None:
+    """Draw the pictures of the pages."""
+    from tyrefem.reports.figures.rolling import contact_figure, slip_curve_figure
+    from tyrefem.reports.figures.style import png
+
+    study = tf.study(STUDY)
+    rolled = study.roll(slip_angle=math.radians(2.0), slip=0.01, camber=math.radians(1.0))
+    (PICTURES / "rolling-contact.png").write_bytes(png(contact_figure(rolled)))
+    curve = study.slip_curve(slip_angle=np.radians(np.linspace(-12, 12, 25)).tolist())
+    (PICTURES / "rolling-curve.png").write_bytes(png(slip_curve_figure(curve)))
+
+
+def main() -> None:
+    """Run the parts that are named, or the closed forms."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parts = {"closed-forms": closed_forms, "measured": measured, "speed": speed, "pictures": pictures}
+    for name in parts:
+        parser.add_argument(f"--{name}", action="store_true")
+    chosen = vars(parser.parse_args())
+    named = [part for name, part in parts.items() if chosen[name.replace("-", "_")]]
+    for part in named or [closed_forms]:
+        part()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,70 @@
+"""`tyrefem roll`: files that agree with each other, curves, and refusals in one line."""
+
+from __future__ import annotations
+
+import csv
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from tyrefem.cli import main
+
+STUDY = "nasa-22x5.5-8pr"
+COARSE = ["--set", "mesh.size=12 mm"]
+
+
+def test_files_agree(here: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    line = ["roll", STUDY, "--slip-angle", "2 deg", "--camber", "1 deg", "--slip", "1 %", "--out", "out", *COARSE]
+    assert main([*line, "--json"]) == 0
+    numbers = json.loads(capfd.readouterr().out)
+    folder = here / "out"
+    assert numbers == json.loads((folder / "roll.json").read_text(encoding="utf-8"))
+    assert numbers["F_y_N"] < 0 < numbers["F_x_N"]
+    assert numbers["slip"] == pytest.approx(0.01, abs=1e-9)
+    with (folder / "rings.csv").open(encoding="utf-8") as lines:
+        power = [float(ring["friction_power_W"]) for ring in csv.DictReader(lines)]
+    assert sum(power) == pytest.approx(numbers["friction_power_W"], rel=1e-6)
+    with (folder / "contact.csv").open(encoding="utf-8") as lines:
+        points = list(csv.DictReader(lines))
+    assert {point["state"] for point in points} == {"0", "1", "2"}
+    for name in ("contact.png", "rings.png"):
+        assert (folder / name).read_bytes().startswith(b"\x89PNG")
+    import meshio
+
+    surface = meshio.read(folder / "contact.vtu")
+    assert len(surface.points) == len(points)
+    assert surface.point_data["pressure_Pa"].max() == pytest.approx(max(float(p["pressure_Pa"]) for p in points))
+
+
+def test_a_curve(here: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    line = ["roll", STUDY, "--slip-angle", "0 deg:12 deg:3", "--friction", "0.6", "--out", "out", *COARSE]
+    assert main(line) == 0
+    assert "cornering stiffness" in capfd.readouterr().out
+    numbers = json.loads((here / "out" / "roll.json").read_text(encoding="utf-8"))
+    with (here / "out" / "curve.csv").open(encoding="utf-8") as lines:
+        rows = list(csv.DictReader(lines))
+    forces = [float(row["F_y_N"]) for row in rows]
+    assert abs(forces[0]) < 1.0
+    assert forces[1] < 0
+    assert numbers["cornering_stiffness_N_rad"] > -forces[1] / float(rows[1]["slip_angle_rad"])
+    assert 0.95 < -forces[2] / (0.6 * float(rows[2]["F_z_N"])) <= 1.0
+    assert (here / "out" / "curve.png").read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--slip-angle", "2"], "--slip-angle: '2' has no unit"),
+        (["--slip-angle", "60 deg"], "--slip-angle: a slip angle of 60 deg is impossible"),
+        (["--slip-angle", "1 deg:2 deg"], "--slip-angle: '1 deg:2 deg' is not from:to:number"),
+        (["--slip", "-100 %"], "--slip: a slip of -1 is impossible"),
+        (["--slip", "1 %", "--torque", "10 N m"], "give at most one of slip, torque and axle force"),
+        (["--friction", "-0.5"], "--friction: must be at least 0"),
+        (["--turn-slip", "5 1/m"], "--turn-slip: a path with a radius of 0.2 m is too tight"),
+        (["--axle-force", "100 kN"], "--axle-force: friction 1 under"),
+    ],
+)
+def test_bad_input_is_one_line(refused: Callable[..., str], arguments: list[str], words: str) -> None:
+    assert words in refused("roll", STUDY, *arguments, *COARSE)

@@ -1,0 +1,190 @@
+"""Forces and moments of a rolling tyre over slip angle or longitudinal slip, with stiffness, trail and peak."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.brief import Brief
+from tyrefem.errors import InputError
+from tyrefem.mechanics.rolling.roll import (
+    SMALL_ANGLE,
+    SMALL_SLIP,
+    TOLERANCE,
+    Rolled,
+    WheelOnRoad,
+    driven,
+    row,
+    settled,
+    swept,
+    wheel_on_road,
+)
+from tyrefem.mechanics.rolling.rolled import RolledTyre
+from tyrefem.mechanics.rolling.rolling_motion import RollingMotion
+
+if TYPE_CHECKING:
+    from tyrefem.inputs.study import StudyData
+
+Array = NDArray[np.float64]
+#: What may be varied.
+VARIED = ("slip_angle", "slip")
+
+
+@dataclass(frozen=True)
+class SlipStiffness:
+    """Slopes of the forces at zero slip.
+
+    Parameters
+    ----------
+    cornering : -dF_y/d(slip angle), N/rad. aligning : dM_z/d(slip angle), N m/rad.
+    slip : dF_x/d(slip), N.
+    """
+
+    cornering: float
+    aligning: float
+    slip: float
+
+    @property
+    def trail(self) -> float:
+        """Pneumatic trail at zero slip, m."""
+        return self.aligning / self.cornering
+
+
+@dataclass(frozen=True, eq=False)
+class SlipCurve(Brief):
+    """Rolling at several slips. Made by `slip_curve`.
+
+    Parameters
+    ----------
+    wheel : tyre and road. varied : "slip_angle" or "slip". states : in the given order.
+    stiffness : slopes at zero slip. error : of the first state that is not at zero.
+    """
+
+    wheel: WheelOnRoad
+    varied: str
+    states: tuple[RolledTyre, ...]
+    stiffness: SlipStiffness
+    error: float
+
+    def _title(self) -> str:
+        return f"of {self.study.name} over {self.varied.replace('_', ' ')}"
+
+    def _facts(self) -> Mapping[str, Any]:
+        return {"cornering stiffness": f"{self.stiffness.cornering / 1e3:.4g} kN/rad", "peak": self.peak}
+
+    @property
+    def study(self) -> StudyData:
+        """The study."""
+        return self.wheel.pressed.study
+
+    @property
+    def table(self) -> Any:
+        """pandas DataFrame of `roll.row`."""
+        import pandas as pd
+
+        return pd.DataFrame([row(self.wheel, state) for state in self.states])
+
+    @property
+    def peak(self) -> dict[str, float]:
+        """Largest force along the varied direction, N, and the slip or slip angle where it is."""
+        component, key = (1, "slip_angle_rad") if self.varied == "slip_angle" else (0, "slip")
+        forces = np.array([state.force[component] for state in self.states])
+        at = int(np.abs(forces).argmax())
+        return {"force_N": float(abs(forces[at])), key: row(self.wheel, self.states[at])[key]}
+
+    def summary(self) -> dict[str, Any]:
+        """Stiffness, trail, peak and all points, SI as the keys state."""
+        from tyrefem.output import versions
+
+        rolling = self.wheel.rolling
+        friction = rolling.friction
+        return {
+            "study": self.study.name,
+            "title": self.study.title,
+            "pressure_Pa": self.wheel.pressed.tyre.pressure,
+            "drum_diameter_m": rolling.road.drum_diameter,
+            "camber_rad": rolling.camber,
+            "friction": None if callable(friction) else friction,
+            "varied": self.varied,
+            "cornering_stiffness_N_rad": self.stiffness.cornering,
+            "aligning_stiffness_Nm_rad": self.stiffness.aligning,
+            "slip_stiffness_N": self.stiffness.slip,
+            "pneumatic_trail_m": self.stiffness.trail,
+            "effective_rolling_radius_m": self.wheel.free(self.states[0].harmonics).travel,
+            "peak": self.peak,
+            "points": [row(self.wheel, state) for state in self.states],
+            "harmonics": self.states[0].harmonics,
+            "error": self.error,
+            "motion": "linear",
+            "versions": versions(),
+        }
+
+
+def slip_stiffness(wheel: WheelOnRoad, harmonics: int) -> SlipStiffness:
+    """Slopes at zero slip, by differences between small slips on both sides."""
+    near = wheel.free(harmonics)
+    left, right = (
+        wheel.roll(RollingMotion(angle, speed=wheel.speed), {"torque": 0.0}, harmonics, near)
+        for angle in (SMALL_ANGLE, -SMALL_ANGLE)
+    )
+    drive, brake = (
+        wheel.roll(RollingMotion(speed=wheel.speed), {"slip": slip}, harmonics, near)
+        for slip in (SMALL_SLIP, -SMALL_SLIP)
+    )
+    force, moment = left.force - right.force, left.moment - right.moment
+    return SlipStiffness(
+        float(-force[1] / (2 * SMALL_ANGLE)),
+        float(moment[2] / (2 * SMALL_ANGLE)),
+        float((drive.force - brake.force)[0] / (2 * SMALL_SLIP)),
+    )
+
+
+def slip_curve(
+    study: StudyData,
+    *,
+    slip_angle: float | Sequence[float] = 0.0,
+    slip: float | Sequence[float] | None = None,
+    torque: float | None = None,
+    axle_force: float | None = None,
+    turn_slip: float = 0.0,
+    tolerance: float = TOLERANCE,
+    **wheel: Any,
+) -> SlipCurve:
+    """Roll a study's tyre at several slip angles (rad) or several slips; options as in `roll`.
+
+    The number of harmonics is the first point's that is not at zero; each point starts from the one before.
+
+    Raises
+    ------
+    InputError : errors of `roll`; not exactly one of slip angle and slip is a list.
+
+    >>> from tyrefem import study
+    >>> curve = slip_curve(study("nasa-22x5.5-8pr", {"mesh.size": "12 mm"}), slip_angle=[0.0, 0.02, 0.2])
+    >>> curve.stiffness.trail > 0 and curve.peak["slip_angle_rad"] == 0.2
+    True
+    """
+    angles, slips = _listed(slip_angle), _listed(slip)
+    if (angles is None) == (slips is None):
+        raise InputError("vary exactly one of slip angle and slip", field="slip_angle")
+    varied = "slip" if angles is None else "slip_angle"
+    points = []
+    for value in slips or angles or ():
+        angle, along = (slip_angle, value) if varied == "slip" else (value, slip)
+        points.append((RollingMotion(float(angle), turn_slip), driven(along, torque, axle_force)))  # type: ignore[arg-type]
+    if not points:
+        raise InputError("give at least one value", field=varied)
+    on_road = wheel_on_road(study, **wheel)
+    values = np.array(slips or angles, dtype=float)
+    first = int(np.flatnonzero(values)[0]) if values.any() else 0
+    checked: Rolled = settled(on_road, *points[first], tolerance)
+    harmonics = checked.state.harmonics
+    states = swept(on_road, points, harmonics)
+    return SlipCurve(on_road, varied, tuple(states), slip_stiffness(on_road, harmonics), checked.error)
+
+
+def _listed(values: float | Sequence[float] | None) -> list[float] | None:
+    return None if values is None or isinstance(values, int | float) else [float(value) for value in values]
