@@ -171,9 +171,7 @@ def speed() -> None:
     for harmonics in (40, 80):
         start = time.process_time()
         near = wheel.free(harmonics)
-        print(
-            f"{harmonics} harmonics, compliance in three directions and free rolling: {time.process_time() - start:.1f} s"
-        )
+        print(f"{harmonics} harmonics, compliance and free rolling: {time.process_time() - start:.1f} s")
         start = time.process_time()
         for angle in np.radians(np.linspace(0.5, 10, 20)):
             near = wheel.roll(RollingMotion(float(angle), speed=20.0), {"torque": 0.0}, harmonics, near)

@@ -24,7 +24,7 @@ from tyrefem.errors import InputError
 from tyrefem.output.folder import results_folder
 
 if TYPE_CHECKING:
-    from tyrefem.mechanics.rolling.roll import Rolled
+    from tyrefem.mechanics.rolling.roll import RolledStudy
     from tyrefem.mechanics.rolling.slip_curve import SlipCurve
 
 #: Options with one quantity: name and unit.
@@ -102,7 +102,7 @@ def roll(
         results_folder(out or Path("results") / f"{loaded.name}-roll", "roll", FILES, force=force) as folder,
         progress(f"{loaded.name}: rolling", quiet=quiet or as_json),
     ):
-        result: Rolled | SlipCurve
+        result: RolledStudy | SlipCurve
         try:
             if several:
                 result = curve = slip_curve(loaded, **given)
@@ -156,7 +156,7 @@ def _placed(error: InputError, given: dict[str, Any]) -> InputError:
     return error
 
 
-def _words(rolled: Rolled) -> str:
+def _words(rolled: RolledStudy) -> str:
     state = rolled.state
     f_x, f_y, f_z = state.force
     m_x, m_y, m_z = state.moment
@@ -207,7 +207,7 @@ def _curve_words(curve: SlipCurve) -> str:
 
 
 #: Place among the commands.
-ORDER = 47
+ORDER = 46.5
 
 
 def register(app: typer.Typer) -> None:

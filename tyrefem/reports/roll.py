@@ -12,7 +12,7 @@ from tyrefem.interruption import keeping
 from tyrefem.output import atomic_folder, atomic_path, write_json
 
 if TYPE_CHECKING:
-    from tyrefem.mechanics.rolling.roll import Rolled
+    from tyrefem.mechanics.rolling.roll import RolledStudy
     from tyrefem.mechanics.rolling.slip_curve import SlipCurve
 
 Array = NDArray[Any]
@@ -20,7 +20,7 @@ Array = NDArray[Any]
 FILES = ("roll.json", "contact.csv", "rings.csv", "contact.vtu", "contact.png", "rings.png", "curve.csv", "curve.png")
 
 
-def contact_table(rolled: Rolled) -> Any:
+def contact_table(rolled: RolledStudy) -> Any:
     """pandas DataFrame: a row per point of the tread near the footprint, SI as the columns state; 0 open, 1 sticks,
     2 slips."""
     import pandas as pd
@@ -41,7 +41,7 @@ def contact_table(rolled: Rolled) -> Any:
     })  # fmt: skip
 
 
-def rings_table(rolled: Rolled) -> Any:
+def rings_table(rolled: RolledStudy) -> Any:
     """pandas DataFrame: place, width, m, and friction power, W, of each ring of the tread."""
     import pandas as pd
 
@@ -51,7 +51,7 @@ def rings_table(rolled: Rolled) -> Any:
     return pd.DataFrame(columns)
 
 
-def write_contact(rolled: Rolled, path: Path) -> Path:
+def write_contact(rolled: RolledStudy, path: Path) -> Path:
     """Write the tread near the footprint as a .vtu surface: x forward, y left, z up from the contact centre, m.
 
     Point data: ``pressure_Pa``, ``traction_Pa``, ``sliding_m_s``, ``state`` (0 open, 1 sticks, 2 slips),
@@ -87,7 +87,7 @@ def write_contact(rolled: Rolled, path: Path) -> Path:
     return path
 
 
-def write_files(rolled: Rolled, folder: Path, *, pictures: bool = True, vtk: bool = True) -> None:
+def write_files(rolled: RolledStudy, folder: Path, *, pictures: bool = True, vtk: bool = True) -> None:
     """``roll.json``, ``contact.csv``, ``rings.csv``, ``contact.vtu``, and pictures of both tables."""
     with atomic_folder(folder) as place:
         write_json(rolled.summary(), place / "roll.json")

@@ -34,7 +34,7 @@ HARMONICS = tuple(count for count in LADDER if 54 <= count <= 120)
 #: Horizontal forces below this share of the load count as no larger.
 SMALL_FORCE = 0.02
 #: Slip angle, rad, and slip at which stiffnesses are taken, on both sides of zero.
-SMALL_ANGLE, SMALL_SLIP = math.radians(0.1), 1e-3
+SMALL_ANGLE, SMALL_SLIP = math.radians(0.5), 5e-3
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,7 +83,7 @@ class WheelOnRoad(Brief):
 
 
 @dataclass(frozen=True, eq=False)
-class Rolled(Brief):
+class RolledStudy(Brief):
     """A study's tyre in steady rolling. Made by `roll`.
 
     Parameters
@@ -208,7 +208,7 @@ def roll(
     turn_slip: float = 0.0,
     tolerance: float = TOLERANCE,
     **wheel: Any,
-) -> Rolled:
+) -> RolledStudy:
     """Roll a study's tyre steadily over the road with Coulomb friction, in motion linear about the inflated tyre.
 
     Parameters
@@ -253,16 +253,16 @@ def driven(slip: float | None, torque: float | None, axle_force: float | None) -
     return given or {"torque": 0.0}
 
 
-def settled(wheel: WheelOnRoad, motion: RollingMotion, along: Mapping[str, float], tolerance: float) -> Rolled:
+def settled(wheel: WheelOnRoad, motion: RollingMotion, along: Mapping[str, float], tolerance: float) -> RolledStudy:
     """The rolling tyre with the number of harmonics that the tolerance needs, at most the last of `HARMONICS`."""
     motion = replace(motion, speed=wheel.speed)
     _check_force(wheel, along)
     before: RolledTyre | None = None
-    result: Rolled | None = None
+    result: RolledStudy | None = None
     for count in HARMONICS:
         state = wheel.roll(motion, along, count, wheel.free(count))
         if before is not None:
-            result = Rolled(wheel, state, _change(state, before))
+            result = RolledStudy(wheel, state, _change(state, before))
             if result.error <= tolerance:
                 break
         before = state

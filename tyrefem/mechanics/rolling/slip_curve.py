@@ -15,7 +15,7 @@ from tyrefem.mechanics.rolling.roll import (
     SMALL_ANGLE,
     SMALL_SLIP,
     TOLERANCE,
-    Rolled,
+    RolledStudy,
     WheelOnRoad,
     driven,
     row,
@@ -180,7 +180,7 @@ def slip_curve(
     on_road = wheel_on_road(study, **wheel)
     values = np.array(slips or angles, dtype=float)
     first = int(np.flatnonzero(values)[0]) if values.any() else 0
-    checked: Rolled = settled(on_road, *points[first], tolerance)
+    checked: RolledStudy = settled(on_road, *points[first], tolerance)
     harmonics = checked.state.harmonics
     states = swept(on_road, points, harmonics)
     return SlipCurve(on_road, varied, tuple(states), slip_stiffness(on_road, harmonics), checked.error)

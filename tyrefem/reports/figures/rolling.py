@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from tyrefem.mechanics.rolling.roll import Rolled
+    from tyrefem.mechanics.rolling.roll import RolledStudy
     from tyrefem.mechanics.rolling.slip_curve import SlipCurve
 
 Array = NDArray[np.float64]
@@ -34,7 +34,7 @@ SLIP_COLOUR = PALETTE[1]
 MARGIN = 12.0
 
 
-def described(rolled: Rolled) -> str:
+def described(rolled: RolledStudy) -> str:
     """Motion of the wheel in words."""
     state = rolled.state
     words = [
@@ -47,7 +47,7 @@ def described(rolled: Rolled) -> str:
     return f"{state.force[2]:.0f} N, " + ", ".join(words)
 
 
-def contact_figure(rolled: Rolled) -> Figure:
+def contact_figure(rolled: RolledStudy) -> Figure:
     """Draw pressure, traction with its direction, and sliding speed with the slipping points, over the footprint."""
     state = rolled.state
     drawn = figure(13.2, 4.0 + TITLE)
@@ -98,7 +98,7 @@ def _arrows(axes: Axes, x: Array, y: Array, traction: Array) -> None:
     axes.quiver(x, y, traction[:, 0], traction[:, 1], color="white", width=0.004, angles="xy")
 
 
-def rings_figure(rolled: Rolled) -> Figure:
+def rings_figure(rolled: RolledStudy) -> Figure:
     """Draw the friction power of each ring of the tread over its width, W/m."""
     state = rolled.state
     drawn = figure(6.4, 3.6 + TITLE)
