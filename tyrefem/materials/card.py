@@ -29,6 +29,7 @@ from tyrefem.materials.fatigue import Fatigue
 from tyrefem.materials.loss_frequency import LossFrequency, loss_over_frequency
 from tyrefem.materials.loss_tangent import Loss
 from tyrefem.materials.properties import PropertyTable, Softening, Sourced, columns
+from tyrefem.materials.road_friction import RoadFriction
 from tyrefem.materials.strain_dependence import StrainDependence
 from tyrefem.quantity import Unit
 
@@ -284,6 +285,7 @@ class MaterialCard(Card):
     strain_dependence: StrainDependence | None = None
     expansion: ThermalExpansion | None = None
     fatigue: Fatigue | None = None
+    friction: RoadFriction | None = None
 
     @property
     def softens(self) -> bool:
