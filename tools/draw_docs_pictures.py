@@ -1,8 +1,8 @@
 """Draw the pictures of docs/ that no command draws (run from the root).
 
 `python tools/draw_docs_pictures.py [NAME ...]`: all of them, or some: modes, reduced-error, realtime-drive,
-realtime-step, realtime-certificate, cost, installed, construction-wrap. Each takes less than a minute. The other
-pictures are those of the commands that stand above them, of benchmarks/ and of tools/make_effects_page.py.
+realtime-step, realtime-certificate, cost, installed, construction-wrap, life-planes. Each takes less than a minute.
+The other pictures are those of the commands that stand above them, of benchmarks/ and of tools/make_effects_page.py.
 """
 
 from __future__ import annotations
@@ -243,10 +243,39 @@ def construction_wrap() -> Figure:
     return drawn
 
 
+def life_planes() -> Figure:
+    """Cracking energy over strain energy on planes turned about the third axis, for four strains of 5 %."""
+    from tyrefem.fatigue.cracking_energy import CrackingEnergy, products, six
+
+    e, modulus = 0.05, 1e6
+    strains = {
+        "pull along 0°": (np.diag([e, -e / 2, -e / 2]), modulus * e),
+        "compression along 0°": (np.diag([-e, e / 2, e / 2]), -modulus * e),
+        "equibiaxial pull": (np.diag([e, e, -2 * e]), 4 * modulus * e),
+        "shear along 0°": (np.array([[0, e, 0], [e, 0, 0], [0, 0, 0.0]]), 0.0),
+    }
+    degrees = np.linspace(0, 180, 181)
+    angle = np.radians(degrees)
+    normals = np.stack([np.cos(angle), np.sin(angle), np.zeros_like(angle)], axis=1)
+    drawn, axes = _axes("normal of the plane from the first axis [°]", "cracking over strain energy")
+    for number, (strain, pressure) in enumerate(strains.values()):
+        stress = 2 * modulus * strain + pressure * np.eye(3)
+        share = np.concatenate([np.linspace(0, 1, 50), np.linspace(1, 0, 50)[1:]])[:, None]
+        peak = CrackingEnergy((share * six(stress))[None], (share * six(strain))[None]).on(products(normals)).peak[0]
+        values = peak / ((stress * strain).sum() / 2)
+        axes.plot(degrees, values, **line_style(number))
+    axes.set_xlim(0, 180)
+    axes.set_xticks(range(0, 181, 45))
+    axes.legend(
+        axes.lines, list(strains), fontsize=FONT - 1, loc="upper left", bbox_to_anchor=(1.01, 1.0), frameon=False
+    )
+    return drawn
+
+
 DRAWN: dict[str, Callable[[], Figure]] = {
     "modes": modes, "reduced-error": reduced_error, "realtime-drive": realtime_drive, "realtime-step": realtime_step,
     "realtime-certificate": realtime_certificate, "cost": cost, "installed": installed,
-    "construction-wrap": construction_wrap,
+    "construction-wrap": construction_wrap, "life-planes": life_planes,
 }  # fmt: skip
 
 

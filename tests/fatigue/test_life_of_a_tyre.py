@@ -15,6 +15,8 @@ from tyrefem.fatigue.places import APART, first_places
 from tyrefem.fatigue.sensitivity import changed
 from tyrefem.mechanics.cycle_schedule import cycle_schedule
 
+#: A light load: large motion then takes a second.
+TENTH = "1 kN"
 COARSE = {"mesh.size": "14 mm", "mechanics.strain": "fem", "mechanics.motion": "linear", "drive.duration": "60 s"}
 
 
@@ -154,3 +156,21 @@ def test_no_card_with_fatigue_is_refused() -> None:
 def test_a_tyre_at_rest_has_no_life() -> None:
     with pytest.raises(InputError, match="never rolls"):
         life(tyre(drive__speed="0 mph"), temperature=60.0)
+
+
+def test_large_motion_takes_the_gradient_of_the_balance() -> None:
+    """H at the Gauss points is that of `WheelAngles.gradient`; rigid rotations leave no strain."""
+    study = tyre(mechanics__motion="large", drive__load=TENTH)
+    cycle: Any = cycle_schedule(study).cycles[0][0]
+    matrix = MatrixCycle(cycle)
+    members = np.asarray(cycle.tyre.mesh.subdomains["carcass"])
+    whole = matrix.angles.gradient(cycle.footprint.amplitudes)[members]
+    expected = whole.transpose(0, 2, 3, 1).reshape(*matrix._gradient(members).shape)
+    np.testing.assert_allclose(matrix._gradient(members), expected, atol=1e-14)
+    stretch, volume = matrix._stretch(members)
+    f = expected + np.eye(3)
+    np.testing.assert_allclose(stretch @ stretch, f.swapaxes(-1, -2) @ f, atol=1e-12)
+    np.testing.assert_allclose(volume, np.linalg.det(f), rtol=1e-12)
+    # The large motion has smaller strains in the carcass than the linear one, whose rotations strain it.
+    energies = matrix.energies("carcass", members)
+    assert np.abs(energies.strain).max() < 0.5

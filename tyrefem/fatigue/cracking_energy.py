@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import functools
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -76,9 +77,45 @@ class CrackingEnergy:
     before: int = 0
 
     @functools.cached_property
-    def largest_strains(self) -> Array:
-        """(points, times) largest principal logarithmic strain."""
-        return np.asarray(np.linalg.eigvalsh(tensors(self.strain))[..., -1])
+    def _largest_stretches(self) -> Array:
+        """(points, times of the cycle) largest principal stretch."""
+        return np.asarray(np.exp(np.linalg.eigvalsh(tensors(self.strain[:, self.before :]))[..., -1]))
+
+    @functools.cached_property
+    def _steps(self) -> tuple[Array, Array, Array]:
+        """Of every step: symmetric part of s d(e), mean stress and change of strain, each (points, steps, 6)."""
+        mean = (self.stress[:, 1:] + self.stress[:, :-1]) / 2
+        change = np.diff(self.strain, axis=1)
+        work = tensors(mean) @ tensors(change)
+        return six((work + np.swapaxes(work, -1, -2)) / 2), mean, change
+
+    @functools.cached_property
+    def _rough_steps(self) -> tuple[Any, Any, Any]:
+        """`_steps` in single precision, for a search."""
+        work, mean, change = (np.ascontiguousarray(part, dtype=np.float32) for part in self._steps)
+        return work, mean, change
+
+    def _path(self, steps: tuple[Array, Array, Array], weights: Array) -> tuple[Array, Array, Array]:
+        """Energy (points, times of the cycle, planes), steps of its part by the normal stress (points, steps, planes),
+        and drift (points, planes)."""
+        work, mean, change = steps
+        turned = np.swapaxes(np.asarray(weights, dtype=work.dtype), -1, -2)
+        energy, pull, normal = work @ turned, mean @ turned, change @ turned
+        normal *= pull
+        energy -= normal
+        np.maximum(np.sign(pull, out=pull), 0, out=pull)
+        normal *= pull
+        energy += normal
+        energies, drift = _closed(energy, self.before)
+        return energies, normal, drift
+
+    def extremes(self, weights: Array) -> tuple[Array, Array, Array]:
+        """Peak, valley and stretch of `on` in single precision, for a search over planes."""
+        energies, _, _ = self._path(self._rough_steps, weights)
+        at = energies.argmax(axis=1)
+        peak = np.take_along_axis(energies, at[:, None], axis=1)[:, 0]
+        stretch = np.take_along_axis(self._largest_stretches, at, axis=1)
+        return np.maximum(peak, 0.0), np.maximum(energies.min(axis=1), 0.0), stretch
 
     def on(self, weights: Array) -> PlaneCycle:
         """The cycle on planes, of `products` (planes, 6), or (points, planes, 6) for planes of every point.
@@ -86,32 +123,22 @@ class CrackingEnergy:
         The integral depends on the path where principal directions turn, so that a revolution may end at another
         energy. This drift is taken out evenly over the revolution; the result does not depend on its start.
         """
-        mean = (self.stress[:, 1:] + self.stress[:, :-1]) / 2
-        change = np.diff(self.strain, axis=1)
-        a, b = tensors(mean), tensors(change)
-        work = a @ b
-        turned = np.swapaxes(np.asarray(weights), -1, -2)
-        total = six((work + np.swapaxes(work, -1, -2)) / 2) @ turned
-        pull = mean @ turned
-        normal = pull * (change @ turned)
-        opening = np.where(pull > 0, normal, 0.0)
-        energy = np.zeros((total.shape[0], total.shape[1] + 1, total.shape[2]))
-        opened = np.zeros_like(energy)
-        np.cumsum(total - normal + opening, axis=1, out=energy[:, 1:])
-        np.cumsum(opening, axis=1, out=opened[:, 1:])
-        energies, drift = _closed(energy[:, self.before :])
-        opening_energies, _ = _closed(opened[:, self.before :])
-        at, least = (index[:, None] for index in (energies.argmax(axis=1), energies.argmin(axis=1)))
-        largest = np.broadcast_to(self.largest_strains[:, self.before :, None], energies.shape)
-        peak, valley = (np.take_along_axis(energies, index, axis=1)[:, 0] for index in (at, least))
-        pulled, before = (np.take_along_axis(opening_energies, index, axis=1)[:, 0] for index in (at, least))
-        strain = np.take_along_axis(largest, at, axis=1)[:, 0]
+        energies, normal, drift = self._path(self._steps, weights)
+        opened, _ = _closed(normal, self.before)
+        at, least = energies.argmax(axis=1), energies.argmin(axis=1)
+        peak, valley = (np.take_along_axis(energies, index[:, None], axis=1)[:, 0] for index in (at, least))
+        pulled, before = (np.take_along_axis(opened, index[:, None], axis=1)[:, 0] for index in (at, least))
         gained = peak - valley
         share = np.clip((pulled - before) / np.where(gained > 0, gained, 1.0), 0.0, 1.0)
-        return PlaneCycle(np.maximum(peak, 0.0), np.maximum(valley, 0.0), np.exp(strain), share, np.abs(drift))
+        stretch = np.take_along_axis(self._largest_stretches, at, axis=1)
+        return PlaneCycle(np.maximum(peak, 0.0), np.maximum(valley, 0.0), stretch, share, np.abs(drift))
 
 
-def _closed(values: Array) -> tuple[Array, Array]:
-    """Values (points, times, planes) of a closed cycle without their drift, and the drift (points, planes)."""
+def _closed(steps: Array, before: int) -> tuple[Array, Array]:
+    """Sums of steps (points, steps, planes) from the start of the cycle on, without their drift, and the drift."""
+    sums = np.zeros((steps.shape[0], steps.shape[1] + 1, steps.shape[2]), dtype=steps.dtype)
+    np.cumsum(steps, axis=1, out=sums[:, 1:])
+    values = sums[:, before:]
     drift = values[:, -1] - values[:, 0]
-    return values - np.linspace(0, 1, values.shape[1])[:, None] * drift[:, None], drift
+    values -= np.linspace(0, 1, values.shape[1], dtype=steps.dtype)[:, None] * drift[:, None]
+    return values, drift

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
 from tyrefem.errors import InputError
-from tyrefem.fatigue.cracking_energy import PlaneCycle, products
+from tyrefem.fatigue.cracking_energy import products
 from tyrefem.fatigue.duty import Duty, WarmRevolutions
 from tyrefem.fatigue.growth import LONGEST, cycles_to_failure, lindley_factor
 from tyrefem.fatigue.matrix_cycle import MatrixCycle
@@ -201,8 +201,9 @@ def _life(
             warm = WarmRevolutions.at(fatigue, duty.temperatures(places), cycles)
             paths = {key: matrix.energies(region, chosen) for key, matrix in matrices.items()}
             point = _Points(fatigue, paths, warm)
-            directions, damage = critical_planes(point.damage, len(places))
+            directions, _ = critical_planes(point.damage, len(places))
             of_cycle, by_phase = point.details(directions)
+            damage = by_phase.sum(axis=0)
             inside = (len(chosen), shape[1])
             with np.errstate(divide="ignore"):
                 fields["km"][chosen] = np.minimum(distance / 1e3 / damage, LONGEST_KM).reshape(inside)
@@ -210,7 +211,7 @@ def _life(
             for name, values in of_cycle.items():
                 fields[name][chosen] = values.reshape(inside)
             normals[chosen] = directions.reshape(*inside, 3)
-            shares[:, chosen] = by_phase.reshape(phases, *inside)
+            shares[:, chosen] = (by_phase / np.maximum(damage, 1e-300)).reshape(phases, *inside)
     regions = tuple(region for region, fatigue in tables.items() if fatigue is not None)
     left_out = tuple(region for region in tables if region not in regions)
     return LifeData(
@@ -230,27 +231,35 @@ class _Points:
     paths: Mapping[tuple[int, ...], CrackingEnergy]
     warm: WarmRevolutions
 
-    def _growth(self, on: PlaneCycle) -> Array:
-        """1/N of one revolution at the reference temperature, (points, planes)."""
+    def _growth(self, peak: Array, valley: Array, stretch: Array) -> Array:
+        """1/N of one revolution at the reference temperature; shape of the inputs."""
+        ratio = valley / np.maximum(peak, 1e-30)
         return 1 / np.maximum(
-            cycles_to_failure(self.fatigue, on.peak, on.ratio, on.stretch, self.fatigue.reference), 1 / LONGEST
+            cycles_to_failure(self.fatigue, peak, ratio, stretch, self.fatigue.reference), 1 / LONGEST
         )
 
     def damage(self, directions: Array) -> Array:
         """Miner's sum of one drive on planes with normals (planes, 3) or (points, planes, 3)."""
         weights = products(directions)
         terms = (
-            self.warm.weighted[key].sum(axis=0)[:, None] * self._growth(path.on(weights))
+            self.warm.weighted[key].sum(axis=0)[:, None] * self._growth(*path.extremes(weights))
             for key, path in self.paths.items()
         )
         return np.asarray(sum(terms))
 
     def details(self, directions: Array) -> tuple[dict[str, Array], Array]:
-        """On one plane of each point: the cycle that does most damage, and the phases' shares of the damage."""
+        """On one plane of each point: the cycle that does most damage; and the phases' damages, (phases, points)."""
         weights = products(directions)[:, None]
-        on = {key: path.on(weights) for key, path in self.paths.items()}
-        by_cycle = {key: self.warm.weighted[key] * self._growth(cycle)[:, 0] for key, cycle in on.items()}
-        which = np.argmax([damage.sum(axis=0) for damage in by_cycle.values()], axis=0)
-        kept = {name: np.choose(which, [getattr(cycle, name)[:, 0] for cycle in on.values()]) for name in _OF_CYCLE}
-        total = np.asarray(sum(by_cycle.values()))
-        return kept, np.asarray(total / np.maximum(total.sum(axis=0), 1e-300))
+        cycles = [path.on(weights) for path in self.paths.values()]
+        damages = np.array(
+            [
+                self.warm.weighted[key] * self._growth(cycle.peak, cycle.valley, cycle.stretch)[:, 0]
+                for key, cycle in zip(self.paths, cycles, strict=True)
+            ]
+        )
+        most = damages.sum(axis=1).argmax(axis=0)
+        kept = {
+            name: np.array([getattr(cycle, name)[:, 0] for cycle in cycles])[most, np.arange(len(directions))]
+            for name in _OF_CYCLE
+        }
+        return kept, np.asarray(damages.sum(axis=0))

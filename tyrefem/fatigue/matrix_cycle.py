@@ -63,11 +63,20 @@ class MatrixCycle:
         return StrainHarmonics(self.footprint)
 
     @functools.cached_property
-    def _gradients(self) -> Array:
-        """(e, 9, q, m) displacement gradient, for large motion."""
-        balanced = self.footprint.balanced
-        assert balanced is not None
-        return self.angles.gradient(self.footprint.amplitudes)
+    def _at_nodes(self) -> tuple[Array, Array]:
+        """(3, n_nodes, m) displacement, and what over r gives the gradient's third column."""
+        value, slope = self.angles.at_nodes(self.footprint.amplitudes)
+        slope[0] -= value[2]
+        slope[2] += value[0]
+        return value, slope
+
+    def _gradient(self, chosen: Indices) -> Array:
+        """(e, q, m, 3, 3) displacement gradient H_ki at all angles, as `WheelAngles.gradient` has it."""
+        elements, (value, slope) = self.angles.elements, self._at_nodes
+        nodes, over_r = elements.element_nodes[chosen], elements.values / elements.radii[chosen][..., None]
+        columns = (*((by, value) for by in elements.gradients[:, chosen]), (over_r, slope))
+        rows = [[by @ values[k][nodes] for by, values in columns] for k in range(3)]
+        return np.moveaxis(np.array(rows), (0, 1), (-2, -1))
 
     def _stretch(self, elements: Indices) -> tuple[Array, Array]:
         """V (e, q, m, 3, 3) and the change of volume det V."""
@@ -77,8 +86,7 @@ class MatrixCycle:
             volume = 1 + linear[..., :3].sum(axis=-1)
             values, vectors = np.linalg.eigh(np.eye(3) + tensors(linear))
             return _spectral(np.maximum(values, SMALLEST), vectors), volume
-        h = self._gradients[elements].transpose(0, 2, 3, 1)
-        f = h.reshape(*h.shape[:3], 3, 3) + np.eye(3)
+        f = self._gradient(elements) + np.eye(3)
         volume = determinant(np.moveaxis(f, (-2, -1), (0, 1)))
         values, vectors = np.linalg.eigh(f.swapaxes(-1, -2) @ f)
         return _spectral(np.sqrt(np.maximum(values, SMALLEST**2)), vectors), volume

@@ -11,7 +11,7 @@ Array = NDArray[np.float64]
 #: Directions of the first search over the half sphere, about 10 degrees apart.
 DIRECTIONS = 200
 #: Directions round the best one in a refinement, refinements, and last step, rad.
-AROUND, REFINEMENTS, LAST = 8, 16, np.radians(0.3)
+AROUND, REFINEMENTS, LAST = 6, 14, np.radians(0.3)
 #: Directions from which the search is refined, and the least angle between them, rad.
 STARTS, DISTINCT = 3, np.radians(25.0)
 
