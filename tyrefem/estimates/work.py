@@ -36,9 +36,9 @@ STEP, FACTORISATION, READING, READ_UNKNOWN, FIELD = 2e-6, 3e-8, 3.5e-4, 8e-8, 1.
 #: with an error estimate of order 2, measured from 1 to 1e-7 K), and factorisations of a phase.
 STEPS, STEPS_AT, FACTORISATIONS = 60.0, 0.01, 12.0
 # Mechanics per node of nine-node elements: inflation and footprint of the radials (1500 to 9800 nodes): 38 to 45 kB,
-# 1 ms (the truck, inflated in 4 load steps: 2 ms), a further load 0.2 ms; in large motion 0.38 to 0.47 MB, 6 to
-# 20 ms, more where its load steps are many.
-BODY, INFLATE, LOAD, LARGE_BODY, LARGE = 45e3, 2e-3, 2e-4, 0.47e6, 0.02
+# 1 ms (the truck, inflated in 4 load steps: 2 ms), a further load 0.2 ms; in large motion 0.16 to 0.47 MB, 6 to
+# 12 ms, more where its load steps are many.
+BODY, INFLATE, LOAD, LARGE_BODY, LARGE = 45e3, 2e-3, 2e-4, 0.47e6, 0.015
 #: Bytes per node that an inflated tyre keeps (nine pressures of the passenger), and the number of tyres kept.
 KEPT, REMEMBERED = 25e3, 16
 #: Bytes of a mesh per vertex (31 000 to 62 000 vertices).
