@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -10,12 +11,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.cache import Cache, Content
 from tyrefem.conduction import Flux, Radiation
 from tyrefem.effects.effect import PORTS, Effect
 from tyrefem.effects.tyre import Tyre
 
 Array = NDArray[np.float64]
 Source = Callable[[Array, float, Array], Array]
+#: Sets of points whose factors of place are kept, for each zone.
+PLACES = 4
 #: Ports that act on the tyre's surroundings.
 SURROUNDING = tuple(port.name for port in PORTS if port.changes == "surroundings")
 
@@ -71,14 +75,20 @@ class Acting:
         addends, factors, tyre = self.at("heat_addend"), self.at("heat_factor"), self.tyre
         if not addends and not factors:
             return base
+        lasting = tuple(effect for effect in factors if effect.of_place)
+        changing = tuple(effect for effect in factors if not effect.of_place)
+        known = Cache[Array](PLACES)
 
         def heat(x: Array, t: float, T: Array) -> Array:
             q = base(x, t, T)
             for effect in addends:
                 q = q + effect.heat_addend(tyre, zone, x, t, T)
-            for effect in factors:
+            for effect in changing:
                 q = q * effect.heat_factor(tyre, zone, x, t, T)
-            return q
+            return q * known.get(Content.of(x), lambda: product(x, t, T)) if lasting else q
+
+        def product(x: Array, t: float, T: Array) -> Array:
+            return np.asarray(math.prod(effect.heat_factor(tyre, zone, x, t, T) for effect in lasting))
 
         return heat
 

@@ -130,6 +130,8 @@ class Effect(Card):
     of_the_day: ClassVar[bool] = False
     #: True if its action on films, sinks and rim depends on time only through the drive.
     of_drive: ClassVar[bool] = False
+    #: True if its factor on the heat depends on place only, not on time or temperature: it is then kept by place.
+    of_place: ClassVar[bool] = False
     #: Times within a phase at which a port jumps, s: simulations with fixed steps end a step there.
     jumps: ClassVar[tuple[float, ...]] = ()
     #: States of the effect during a run, by name; its ports read them by ``tyre.state(self, name, t)``.

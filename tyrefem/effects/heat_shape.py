@@ -23,6 +23,7 @@ class HeatShape(Effect):
     name: ClassVar[str] = "heat-shape"
     family: ClassVar[str] = "calibration"
     calibration: ClassVar[bool] = True
+    of_place: ClassVar[bool] = True
     sentence: ClassVar[str] = "The strain energy differs along the meridian, by a smooth factor."
     source: ClassVar[str] = "none: what a diagnosis allows for where the strain law may be wrong"
 
