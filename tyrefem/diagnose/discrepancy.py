@@ -34,7 +34,7 @@ class Discrepancy(Brief):
     nuisance : unknowns that every set has beside the model.
     shared_error : error that readings share; None: none.
     offset : by run (n_blocks,) K, added to the computed temperatures; empty: none.
-    width : factor on the prior standard deviations of ``nuisance``.
+    width : factor on the prior standard deviations of ``nuisance``, or of missing heat.
     """
 
     name: str
@@ -86,7 +86,8 @@ def discrepancies(residuals: Residuals) -> Iterator[Discrepancy]:
 
     - strain energy: half waves along the meridian, the same in all runs, fitted with the full model; and a smaller
       part for each run, linear. Priors several times as wide follow a strain energy that is wrong by a factor;
-    - missing heat: patches of heat and flux, a part that all runs share and a part for each run, linear;
+    - missing heat: patches of heat and flux, a part that all runs share and a part for each run, linear; in several
+      sizes, because a cause outside the catalogue may heat ten times as much as expected;
     - correlated readings: a course over time for each sensor and run.
     """
     further = residuals.unknowns[residuals.nuisance :]
@@ -102,12 +103,31 @@ def discrepancies(residuals: Residuals) -> Iterator[Discrepancy]:
             shapes = tuple(replace(unknown, sd=width * unknown.sd) for unknown in energy)
             shared = _shared(residuals, [of_runs, *_courses(residuals, size)])
             yield Discrepancy(ENERGY, size, shared, shapes, width=width)
-    heat = [unknown for unknown in further if unknown.effect in ("missing-heat", "missing-flux")]
-    if heat:
-        both = [_of_all(residuals, heat, 1.0), _of_runs(residuals, heat, 0.5)]
-        yield Discrepancy(HEAT, 0.0, _shared(residuals, both))
+    if missing_patches(residuals):
+        for width in residuals.settings.heat_widths:
+            yield missing_heat_beside(residuals, (), width)
     for size in residuals.settings.discrepancy_sizes:
         yield Discrepancy(READINGS, size, _shared(residuals, _courses(residuals, size)))
+
+
+def missing_patches(residuals: Residuals) -> tuple[Unknown, ...]:
+    """The patches of missing heat and flux among the unknowns of the residuals."""
+    further = residuals.unknowns[residuals.nuisance :]
+    return tuple(unknown for unknown in further if unknown.effect in ("missing-heat", "missing-flux"))
+
+
+def missing_heat_beside(
+    residuals: Residuals, sources: Sequence[Unknown], width: float, size: float = 0.0
+) -> Discrepancy:
+    """Missing heat as a discrepancy; ``sources``: patches that are fitted with the full model, the others are linear.
+
+    ``width``: factor on the prior sd. ``size``: of errors that neighbouring readings share, K; 0: none.
+    """
+    every = missing_patches(residuals)
+    linear = [patch for patch in every if patch not in sources]
+    parts = [_of_all(residuals, linear, width), _of_runs(residuals, every, 0.5 * width), *_courses(residuals, size)]
+    fitted = tuple(replace(patch, sd=width * patch.sd) for patch in sources)
+    return Discrepancy(HEAT, size, _shared(residuals, parts), fitted, width=width)
 
 
 #: Columns of the readings by run.

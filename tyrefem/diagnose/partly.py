@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from tyrefem.diagnose.candidates import Candidate, Members
 from tyrefem.diagnose.discrepancy import NONE
+from tyrefem.diagnose.free_heat import FreeHeat
 from tyrefem.diagnose.robustness import Robustness, UnderDiscrepancy
 from tyrefem.diagnose.settings import DiagnosisSettings
 from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, PARTLY, UNEXPLAINED, Judgement
@@ -32,7 +33,12 @@ class Revision(NamedTuple):
 
 
 def beside_discrepancies(
-    judgement: Judgement, robustness: Robustness, settings: DiagnosisSettings, *, law_replaced: bool = False
+    judgement: Judgement,
+    robustness: Robustness,
+    settings: DiagnosisSettings,
+    *,
+    law_replaced: bool = False,
+    heat: FreeHeat | None = None,
 ) -> Revision:
     """The verdict with what else may be wrong, and the effects that are part of the cause.
 
@@ -40,10 +46,11 @@ def beside_discrepancies(
       their probabilities. *confounded* stays unless the data exclude that effects alone are wrong (`NOT_EXCLUDED`).
     - *partly identified*: more is wrong than effects, and some act with at least 90 % probability beside every
       discrepancy model, with amounts that agree; beside the most probable model noise explains the misfit, and they
-      predict the held-out runs no worse than no effect.
+      predict the held-out runs no worse than no effect. Heat of unknown origin does not explain the data by itself.
     - *unexplained*: more is wrong, and there is no such effect.
 
     ``law_replaced``: the study's strain law was wrong, and another one stands in its place; nothing is "identified".
+    ``heat``: heat of unknown origin without and beside the effects that are about to be named.
     """
     revision = Revision(judgement.verdict, judgement.reasons, judgement.doubts)
     if judgement.verdict == NO_GAP:
@@ -75,6 +82,12 @@ def beside_discrepancies(
     if not _predicts_held_out(leading, members):
         keys = " + ".join(member.key for member in members)
         return revision.doubted(f"{keys} is not named: the held-out runs are predicted better without it")
+    if heat is not None and heat.explains(settings.free_heat_lead):
+        keys = " + ".join(member.key for member in members)
+        doubt = f"{keys} is not named: heat of unknown origin explains the data about as well"
+        if revision.verdict == CONFOUNDED:
+            return revision._replace(reasons=(*revision.reasons, doubt))
+        return revision.doubted(doubt)
     smallest = min(robustness.least(member.key) for member in members)
     reason = (
         f"{' + '.join(member.key for member in members)} acts with at least {_percent(smallest)} whatever else is wrong"

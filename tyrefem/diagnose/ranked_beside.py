@@ -11,7 +11,7 @@ import numpy as np
 
 from tyrefem.brief import Brief
 from tyrefem.diagnose.candidates import Candidate, Members, separate
-from tyrefem.diagnose.discrepancy import NONE, READINGS, Discrepancy, beside_law, discrepancies
+from tyrefem.diagnose.discrepancy import HEAT, NONE, READINGS, Discrepancy, beside_law, discrepancies
 from tyrefem.diagnose.fits import FittedSet, continued, first_fits, fitted_beside, linear_about, state_beside
 from tyrefem.diagnose.gauss_newton import FitState, initial_state
 from tyrefem.diagnose.residuals import Residuals
@@ -27,6 +27,8 @@ STRAIN, RENEWED = 2.5, 2
 PROBABLE = 1e-3
 #: Beside a discrepancy of this size noise explains the misfit, so that no larger one is tried.
 USUAL_P = 0.01
+#: Sizes of missing heat whose evidence is this far below the best one's do not count in the average, nats.
+NEGLIGIBLE = 12.0
 
 
 @dataclass(eq=False)
@@ -70,7 +72,7 @@ class RankedBeside(Brief):
     @property
     def far(self) -> bool:
         """Whether the fits lie far from the study, where sensitivities differ from those at x = 0: priors are wide."""
-        return self.discrepancy.width > 1.0 and self.discrepancy.size == 0.0
+        return bool(self.discrepancy.nuisance) and self.discrepancy.width > 1.0 and self.discrepancy.size == 0.0
 
     def score(self, members: Members) -> float:
         """ln(prior) + ln evidence of a fitted set."""
@@ -234,7 +236,8 @@ def robustness(
     """Sets of effects beside every discrepancy model.
 
     The leading sets, and no effect, are fitted together with the model's unknowns; others are judged in the linear
-    model about these fits. Of the sizes of a discrepancy of the readings the most probable one counts.
+    model about these fits. Of the sizes of a discrepancy of the readings the most probable one counts; over those of
+    missing heat evidence is averaged.
 
     Parameters
     ----------
@@ -254,28 +257,31 @@ def robustness(
         key=lambda entry: -entry.score,
     )
     finished = [under(Discrepancy(NONE, 0.0), problem.residuals, alone)]
-    ranked: dict[str, RankedBeside] = {}
+    ranked: dict[str, list[RankedBeside]] = {}
     for name, sizes in _by_cost(problem, fits).items():
         left = () if explained else Robustness(tuple(finished)).open(settings.named_probability)
         full = explained or bool(left)
         for discrepancy in sizes:
-            known = ranked.get(name)
-            if known is not None and not _further(known, discrepancy):
+            known = ranked.get(name, [])
+            if known and name != HEAT and not _further(known[0], discrepancy):
                 continue
             beside = RankedBeside(problem, discrepancy, left)
             beside.begin(fits, None if full else 1)
-            if known is None or _total(beside.scored()) > _total(known.scored()):
-                ranked[name] = beside
+            if not known or name == HEAT:
+                ranked[name] = [*known, beside]
+            elif _total(beside.scored()) > _total(known[0].scored()):
+                ranked[name] = [beside]
         if not explained:
-            beside = ranked[name]
-            if full:
+            for beside in ranked[name] if full else ():
                 beside.further()
-            finished.append(under(beside.discrepancy, beside.residuals, beside.scored()))
+            finished.append(under(*averaged(ranked[name])))
     share = (1 - settings.right_model) / max(len(ranked), 1)
 
     def result() -> Robustness:
         sets = [(Discrepancy(NONE, 0.0), problem.residuals, settings.right_model, alone)]
-        sets += [(beside.discrepancy, beside.residuals, share, beside.scored()) for beside in ranked.values()]
+        for sizes in ranked.values():
+            discrepancy, residuals, rows = averaged(sizes)
+            sets.append((discrepancy, residuals, share, rows))
         scores = [math.log(prior) + _total(rows) for _, _, prior, rows in sets]
         probabilities = shares(scores)
         models = [
@@ -289,7 +295,7 @@ def robustness(
     if not explained:
         return first
     probable = {model.name for model in first.models if model.probability > PROBABLE}
-    unfinished = [beside for name, beside in ranked.items() if name in probable or not certain]
+    unfinished = [beside for name, sizes in ranked.items() if name in probable or not certain for beside in sizes]
     for beside in unfinished:
         beside.further()
     return result() if unfinished else first
@@ -341,7 +347,7 @@ def fit_beside(problem: SelectionProblem, model: UnderDiscrepancy, fit: FittedSe
 def _by_cost(problem: SelectionProblem, fits: Mapping[Members, FittedSet]) -> dict[str, list[Discrepancy]]:
     """The models by name with their sizes, those without further unknowns first.
 
-    Of correlated readings there is only the size that explains the fits best.
+    Of correlated readings there is only the size that explains the fits best; of missing heat those that come near it.
     """
     every = sorted(discrepancies(problem.residuals), key=lambda discrepancy: bool(discrepancy.nuisance))
     models: dict[str, list[Discrepancy]] = {}
@@ -355,7 +361,31 @@ def _by_cost(problem: SelectionProblem, fits: Mapping[Members, FittedSet]) -> di
             for members, fit in fits.items()
         )
 
-    return {name: [max(sizes, key=best)] if name == READINGS else sizes for name, sizes in models.items()}
+    for name in {HEAT, READINGS} & set(models):
+        values = [best(discrepancy) for discrepancy in models[name]]
+        least = max(values) - (NEGLIGIBLE if name == HEAT else 0.0)
+        models[name] = [size for size, value in zip(models[name], values, strict=True) if value >= least]
+    return models
+
+
+def averaged(sizes: Sequence[RankedBeside]) -> tuple[Discrepancy, Residuals, list[ScoredSet]]:
+    """Sets beside one discrepancy of several equally probable sizes: their scores by the average of the evidences.
+
+    Sizes that are left out count as no evidence. Discrepancy, residuals and fits are those of the most probable size.
+    """
+    leading = max(sizes, key=lambda beside: _total(beside.scored()))
+    if leading.discrepancy.name != HEAT:
+        return leading.discrepancy, leading.residuals, leading.scored()
+    count = math.log(len(leading.problem.settings.heat_widths))
+    scores: dict[Members, list[float]] = {}
+    for beside in sizes:
+        for row in beside.scored():
+            scores.setdefault(row.members, []).append(row.score)
+    rows = [
+        ScoredSet(float(np.logaddexp.reduce(values)) - count, members, leading.fits.get(members))
+        for members, values in scores.items()
+    ]
+    return leading.discrepancy, leading.residuals, sorted(rows, key=lambda row: -row.score)
 
 
 def _total(scored: Sequence[ScoredSet]) -> float:

@@ -21,6 +21,7 @@ from tyrefem.diagnose.energy_shapes import SHAPE
 from tyrefem.diagnose.evaluations import Evaluations, evaluating
 from tyrefem.diagnose.fits import FittedSet, first_fits, fitted_beside
 from tyrefem.diagnose.forward_model import ForwardModel
+from tyrefem.diagnose.free_heat import free_heat
 from tyrefem.diagnose.heat_over_time import heat_over_time
 from tyrefem.diagnose.heat_patches import patches
 from tyrefem.diagnose.law_search import HeatLaw, heat_law
@@ -339,13 +340,16 @@ def rank(
         certain=judgement.verdict == IDENTIFIED and not law_replaced,
         explained=judgement.verdict != UNEXPLAINED,
     )
-    revision = beside_discrepancies(judgement, robust, settings, law_replaced=law_replaced)
+    revision, heat = beside_discrepancies(judgement, robust, settings, law_replaced=law_replaced), None
+    if revision.members:
+        heat = free_heat(problem, problem.ordered(revision.members), robust.models[0].size)
+        revision = beside_discrepancies(judgement, robust, settings, law_replaced=law_replaced, heat=heat)
     if partly := revision.members:
         if tick:
             tick("trying other strain laws")
         sets = dict.fromkeys(problem.ordered(each) for each in ((), *((member,) for member in partly), partly))
         robust = beside_strain_laws(problem, robust, [fit_of(members) for members in sets])
-        revision = beside_discrepancies(judgement, robust, settings, law_replaced=law_replaced)
+        revision = beside_discrepancies(judgement, robust, settings, law_replaced=law_replaced, heat=heat)
     judgement = judgement.revised(revision.verdict, revision.reasons, revision.doubts)
     partly = revision.members
     if not partly:

@@ -1,0 +1,58 @@
+"""Heat of unknown origin by itself: whether it explains what effects are about to be named for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from tyrefem.brief import Brief
+from tyrefem.diagnose.candidates import Members
+from tyrefem.diagnose.discrepancy import missing_heat_beside, missing_patches
+from tyrefem.diagnose.fits import continued, first_fits
+from tyrefem.diagnose.missing_heat import pursuit
+from tyrefem.diagnose.selection import SelectionProblem
+
+#: Noise explains the misfit of the heat from this probability on.
+USUAL_P = 0.01
+
+
+@dataclass(frozen=True)
+class FreeHeat(Brief):
+    """Sources of unknown origin, fitted with the full model.
+
+    ``p_value``: probability of their misfit without effects. ``lead``: what the effects add to their ln evidence, nats.
+    """
+
+    p_value: float
+    lead: float
+
+    def _title(self) -> str:
+        return f"p = {self.p_value:.2g}, effects add {self.lead:.0f} nats"
+
+    def explains(self, least_lead: float) -> bool:
+        """Whether noise explains what the heat leaves, and the effects add less than this, nats."""
+        return self.p_value >= USUAL_P and self.lead < least_lead
+
+
+def free_heat(problem: SelectionProblem, members: Members, size: float) -> FreeHeat | None:
+    """Sources of unknown origin without the effects and beside them; None without patches of missing heat.
+
+    Up to three patches (`pursuit`) are fitted with the full model, as a strong source is not linear. The others, and a
+    part for each run, are linear. Their prior is that of a source as expected: one several times as strong is less
+    plausible than an effect that it imitates.
+
+    Parameters
+    ----------
+    members : the effects. size : K, of errors of the readings that neighbours in time share, as beside the effects.
+    """
+    residuals, predictions = problem.residuals, problem.predictions
+    patches = missing_patches(residuals)
+    if not patches:
+        return None
+    sources = pursuit(residuals, patches)
+    heat = missing_heat_beside(residuals, sources, 1.0, size)
+    here = residuals.beside(heat.nuisance, heat.shared_error, heat.offset)
+    (first,) = first_fits(here, predictions, [()], None, problem._count)
+    (alone,) = continued(here, predictions, [first], problem._count)
+    alone = max(alone, first, key=lambda fit: fit.log_evidence)
+    (beside,) = first_fits(here, predictions, [members], {members: alone}, problem._count)
+    return FreeHeat(alone.p_value, beside.log_evidence - alone.log_evidence)
