@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from tyrefem.errors import InputError
+from tyrefem.mechanics.rolling.contact_body import ContactBody
 from tyrefem.mechanics.rolling.example_bodies import bristles, half_plane, string
 from tyrefem.mechanics.rolling.friction import OPEN, SLIP, STICK, Control, RollingContact
 
@@ -142,3 +143,18 @@ def test_a_body_that_does_not_touch_is_refused() -> None:
     load = Control(np.zeros(5), np.zeros((5, 2)), arms, 1.0)
     with pytest.raises(InputError, match="does the body touch"):
         RollingContact(body, np.ones(5), np.zeros((5, 2)), np.ones(5), [load]).solve(values=[0.0])
+
+
+def test_a_step_that_is_half_open_drags_a_bristle_by_half() -> None:
+    """A bristle at the front of the contact has been dragged only since it touched."""
+    count, step, slip, tangential = 5, 1.0, 1e-3, 2e-3
+    gaps = np.array([1.0, -1.0, -1.0, 1.0, 1.0])
+    dragged = []
+    for open_share in (0.0, 0.5):
+        before = np.array([0.0, 0.0, open_share, 0.0, 0.0])
+        body = bristles(count, 1e-3, tangential)
+        body = ContactBody(body.compliance, body.upstream, before=before)
+        contact = RollingContact(body, gaps, rigid(count, step, slip, 1), np.full(count, 1e6)).solve()
+        dragged.append(-contact.forces[1:3, 2] * tangential / slip)
+    assert dragged[0] == pytest.approx([2.0, 1.0], rel=1e-6)
+    assert dragged[1] == pytest.approx([1.5, 0.5], rel=1e-6)

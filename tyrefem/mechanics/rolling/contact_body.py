@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,11 +29,14 @@ class ContactBody:
     upstream : (k,) the point at which the material of a point was a step before; `NOWHERE`: none. Such points cannot
         touch.
     turns : (k, 3, 3) turn from the axes of the point upstream to those of the point; None: all axes are parallel.
+    before : (k,) share of the last step before the material of a point touched. In that share it moved over the road
+        as in the step before; this does not count as slip. None: zero.
     """
 
     compliance: Array
     upstream: Indices
-    turns: Array | None = field(default=None)
+    turns: Array | None = None
+    before: Array | None = None
 
     @property
     def n_points(self) -> int:
@@ -45,21 +48,42 @@ class ContactBody:
         """(k,) points with a point upstream."""
         return np.asarray(self.upstream != NOWHERE)
 
-    @functools.cached_property
-    def slip_compliance(self) -> Array:
-        """(k, 2, k, 3) displacement in the road's plane from the point upstream to the point, per force, m/N."""
-        size, before = self.n_points, self.upstream
-        at = self.compliance.reshape(size, COMPONENTS, -1)
-        came = at[before] if self.turns is None else self.turns @ at[before]
-        change = at[:, 1:] - came[:, 1:]
-        change[~self.may_touch] = 0.0
-        return np.asarray(change.reshape(size, 2, size, COMPONENTS))
+    def block(self, rows: Indices, columns: Indices) -> Array:
+        """(n, 3, m, 3) compliance between some points."""
+        every = np.arange(COMPONENTS)
+        return np.asarray(self.compliance[np.ix_(rows, every, columns, every)])
+
+    def slip_block(self, index: Indices) -> Array:
+        """(n, 2, n, 3) slip of a step at some points that may touch, per force on them, m/N."""
+        change = self._change_block(index, index)
+        if self.before is not None:
+            entering = np.flatnonzero(self.before[index])
+            ahead = self._change_block(self.upstream[index[entering]], index)
+            change[entering] -= self.before[index[entering]][:, None, None, None] * ahead
+        return change
+
+    def _change_block(self, rows: Indices, columns: Indices) -> Array:
+        came = self.block(self.upstream[rows], columns)
+        if self.turns is not None:
+            came = np.einsum("kab,kbij->kaij", self.turns[rows], came)
+        change = self.block(rows, columns)[:, 1:] - came[:, 1:]
+        change[~self.may_touch[rows]] = 0.0
+        return np.asarray(change)
+
+    def touching(self, change: Array) -> Array:
+        """Changes (k, 2, ...) of a step, of the share of it in which the material touched."""
+        if self.before is None:
+            return change
+        entering = np.flatnonzero(self.before)
+        left = change.copy()
+        share = self.before[entering].reshape(-1, *[1] * (change.ndim - 1))
+        left[entering] -= share * change[self.upstream[entering]]
+        return left
 
     def displacement(self, forces: Array) -> Array:
         """(k, 3) displacement, m, under forces (k, 3), N."""
-        loaded = np.flatnonzero(np.any(forces != 0, axis=1))
-        flat = self.compliance[:, :, loaded].reshape(COMPONENTS * self.n_points, -1)
-        return np.asarray((flat @ forces[loaded].ravel()).reshape(-1, COMPONENTS))
+        size = COMPONENTS * self.n_points
+        return np.asarray((self.compliance.reshape(size, size) @ forces.ravel()).reshape(-1, COMPONENTS))
 
     def change(self, values: Array) -> Array:
         """(k, 2) change in the road's plane, from the point upstream to the point, of vectors (k, 3)."""

@@ -57,7 +57,7 @@ class Control:
         slope = self.arms + np.einsum("kab,kb->ka", self.levers, displacement)
         pulled = np.einsum("kab,ka->kb", self.levers[loaded], forces[loaded])
         size = len(loaded) * COMPONENTS
-        through = pulled.ravel() @ body.compliance[loaded][:, :, index].reshape(size, -1)
+        through = pulled.ravel() @ body.block(loaded, index).reshape(size, -1)
         return np.asarray(slope[index] + through.reshape(-1, COMPONENTS))
 
 
@@ -68,7 +68,8 @@ class FrictionForces:
     Parameters
     ----------
     forces : (k, 3) of the road on the body: away from the road, along it, to the left, N.
-    displacement : (k, 3), m. gaps : (k,), m. slips : (k, 2) slip of a step relative to the road, m.
+    displacement : (k, 3), m. gaps : (k,), m. ways : (k, 2) motion of a step relative to the road, m; slips : (k, 2) of
+        the share of the step in which the point touched.
     states : (k,) `OPEN`, `STICK`, `SLIP`.
     controls : values of the controls. steps : number of Newton steps.
     """
@@ -76,6 +77,7 @@ class FrictionForces:
     forces: Array
     displacement: Array
     gaps: Array
+    ways: Array
     slips: Array
     states: States
     controls: tuple[float, ...]
@@ -135,7 +137,14 @@ class RollingContact:
         for step in range(STEPS):
             if now.exact:
                 return FrictionForces(
-                    now.forces, now.displacement, now.gaps, now.slips, now.states, tuple(map(float, now.numbers)), step
+                    now.forces,
+                    now.displacement,
+                    now.gaps,
+                    now.ways,
+                    now.slips,
+                    now.states,
+                    tuple(map(float, now.numbers)),
+                    step,
                 )
             now = self._stepped(now)
         raise InputError(f"the contact does not settle in {STEPS} steps: residual {now.size:.2g}")
@@ -178,11 +187,15 @@ class _State:
         return np.asarray(gaps)
 
     @functools.cached_property
-    def slips(self) -> Array:
-        slips = self.contact.slips + self.contact.body.change(self.displacement)
+    def ways(self) -> Array:
+        ways = self.contact.slips + self.contact.body.change(self.displacement)
         for control, number in zip(self.contact.controls, self.numbers, strict=True):
-            slips = slips + number * control.slips
-        return np.asarray(slips)
+            ways = ways + number * control.slips
+        return np.asarray(ways)
+
+    @functools.cached_property
+    def slips(self) -> Array:
+        return self.contact.body.touching(self.ways)
 
     @functools.cached_property
     def predicted(self) -> Array:
@@ -247,8 +260,8 @@ class _State:
         normal, tangential = (stiffness[index] for stiffness in contact._stiffness)
         turning, along, friction = self._turning(index)
         rows = np.empty((count, COMPONENTS, size))
-        rows[:, 0] = normal[:, None] * body.compliance[index, 0][:, index].reshape(count, size)
-        change = body.slip_compliance[index][:, :, index].reshape(count, 2, size)
+        rows[:, 0] = normal[:, None] * body.block(index, index)[:, 0].reshape(count, size)
+        change = body.slip_block(index).reshape(count, 2, size)
         turned = tangential[:, None, None] * turning
         rows[:, 1:] = turned @ change
         block, here = rows.reshape(count, COMPONENTS, count, COMPONENTS), np.arange(count)
@@ -258,14 +271,14 @@ class _State:
         matrix[:size, :size] = rows.reshape(size, size)
         targets = np.empty((count, COMPONENTS))
         targets[:, 0] = -normal * contact.gaps[index]
-        targets[:, 1:] = -np.einsum("kab,kb->ka", turned, contact.slips[index])
+        targets[:, 1:] = -np.einsum("kab,kb->ka", turned, body.touching(contact.slips)[index])
         targets[:, 1:] -= np.where(slipping[..., 0], np.einsum("kab,kb->ka", turning, self.pull[index]), 0.0)
         right[:size] = targets.ravel()
         loaded = np.flatnonzero((self.states != OPEN) | np.any(self.forces != 0, axis=1))
         for number, control in enumerate(contact.controls):
             column = matrix[:size, size + number].reshape(count, COMPONENTS)
             column[:, 0] = normal * control.gaps[index]
-            column[:, 1:] = np.einsum("kab,kb->ka", turned, control.slips[index])
+            column[:, 1:] = np.einsum("kab,kb->ka", turned, body.touching(control.slips)[index])
             slope = np.zeros_like(self.forces)
             slope[loaded] = control.slope(body, self.forces, self.displacement, loaded)
             matrix[size + number, :size] = slope[index].ravel()

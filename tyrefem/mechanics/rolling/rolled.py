@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
+from tyrefem.mechanics.footprint.footprint import BEYOND
 from tyrefem.mechanics.rolling.friction import OPEN, SLIP, FrictionForces
 from tyrefem.mechanics.rolling.rolling_grid import RollingGrid
 from tyrefem.mechanics.rolling.rolling_motion import RollingMotion
@@ -120,6 +121,22 @@ class RolledTyre(Brief):
     def _map(self, values: NDArray[Any]) -> NDArray[Any]:
         return values.reshape(len(self.grid.angles), -1, *values.shape[1:])
 
+    @functools.cached_property
+    def before(self) -> Array:
+        """(k,) share of the last step before the material of a point touched, at the front of the contact.
+
+        The front lies p_k/p_(k-1), at most 1, and `BEYOND` steps before the first point k with pressure, as the ends of
+        a footprint do.
+        """
+        pressure = self.pressure
+        ahead = np.zeros_like(pressure)
+        ahead[:-1] = pressure[1:]
+        behind = np.zeros_like(pressure)
+        behind[1:] = pressure[:-1]
+        first = (pressure > 0) & (ahead == 0)
+        share = np.divide(pressure, np.maximum(behind, pressure), out=np.zeros_like(pressure), where=first)
+        return np.where(first, np.maximum(1 - share - BEYOND, 0.0), 0.0).ravel()
+
     @property
     def pressure(self) -> Array:
         """(n_angles, m) contact pressure, Pa."""
@@ -156,7 +173,7 @@ class RolledTyre(Brief):
         contact, upstream = self.contact, self.grid.upstream
         before = np.where((upstream >= 0)[:, None], contact.forces[upstream], 0.0)
         opened = np.where(upstream >= 0, contact.gaps - contact.gaps[upstream], 0.0)
-        relative = np.column_stack([opened, contact.slips])
+        relative = np.column_stack([opened, contact.ways])
         work = -((contact.forces + before) / 2 * relative).sum(axis=1)
         return self._map(work * self.spin / self.grid.step)
 

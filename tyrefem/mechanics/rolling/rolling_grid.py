@@ -157,6 +157,12 @@ class RollingGrid(Brief):
                 compliance[to, :, of] = np.einsum("ai,aibj,bj->ij", parts[to], block, parts[of], optimize=True)
         return compliance.reshape(self.n_points, self.n_points)
 
+    @functools.cached_property
+    def level_compliance(self) -> Array:
+        """`compliance` along the axes of a flat road."""
+        normals = np.broadcast_to(self.road.normal, (self.n_points, 3))
+        return self.compliance(self.road_axes(normals))
+
     def compliance(self, axes: Array) -> Array:
         """(k, 3, k, 3) displacement of a point along its ``axes`` (k, 3, 3) per force along those of another, m/N."""
         across, count = len(self.influence.places[0]), len(self.angles)

@@ -28,6 +28,8 @@ Array = NDArray[np.float64]
 FrictionLaw = Callable[[Array, Array], Array]
 #: Relative change of the forces at which geometry and friction have settled; rounds before giving up.
 SETTLED, ROUNDS = 1e-7, 60
+#: Change of the share of the first step in contact at which it has settled; rounds before it is left as it is.
+FRONT_SETTLED, FRONT_ROUNDS = 0.05, 3
 
 
 @dataclass(frozen=True)
@@ -122,21 +124,30 @@ class SteadyRolling(Brief):
         self.pressing.check(guess[0])
         grid = self._near(harmonics, guess[0]) if start is None else start.grid
         last, before = start, None
-        for _ in range(ROUNDS):
+        front = None if start is None else start.before
+        for number in range(ROUNDS):
             rolled = self._solved(grid, motion, given, guess, last)
             wider = grid.around(rolled.contact.forces[:, 0] > 0, 1)
             guess, last = (rolled.deflection, rolled.travel), rolled
             if wider is not grid:
-                grid, before = wider, None
+                grid, before, front = wider, None, None
                 last = None
                 continue
             forces = rolled.contact.forces
             change = math.inf if before is None else float(np.abs(forces - before).max())
-            if self._closed(motion) or change <= SETTLED * float(np.abs(forces).max()):
+            fronted = self._fronted(grid, rolled, front) or number >= FRONT_ROUNDS
+            front = rolled.before
+            if fronted and (self._closed(motion) or change <= SETTLED * float(np.abs(forces).max())):
                 self.pressing.check(rolled.deflection)
                 return rolled
             before = forces
         raise InputError(f"forces, geometry and friction of the rolling contact do not settle in {ROUNDS} rounds")
+
+    def _fronted(self, grid: RollingGrid, rolled: RolledTyre, used: Array | None) -> bool:
+        """True if the front of the contact is where a solution took it to be."""
+        if self.friction == 0:
+            return True
+        return used is not None and bool(np.abs(used - rolled.before).max() <= FRONT_SETTLED)
 
     def _closed(self, motion: RollingMotion) -> bool:
         """True if a contact problem does not depend on its solution."""
@@ -167,7 +178,9 @@ class SteadyRolling(Brief):
         gaps, normals = grid.gaps(moved, self.reach - (given.deflection or 0.0))
         axes = grid.road_axes(normals)
         gaps = gaps + np.einsum("kx,kx->k", normals, moved)
-        body = ContactBody(grid.compliance(axes), grid.upstream, grid.turns(axes))
+        before = None if last is None or self.friction == 0 else last.before
+        compliance = grid.compliance(axes) if grid.turns(axes) is not None else grid.level_compliance
+        body = ContactBody(compliance, grid.upstream, grid.turns(axes), before)
         free = grid.free_places
         rigid = body.change(grid.along(axes, free))
         per_radian = -grid.step * motion.road_per_travel(*grid.middles(moved))
