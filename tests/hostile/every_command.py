@@ -25,6 +25,7 @@ MORE = {
     "plan": ["--set", "plan.drives=2", "--set", "plan.sensors_most=0"],
     "export": ["--tolerance", "50 K"],
     "rig layers": ["--most", "1"],
+    "wear": ["--set", "materials.tread=rubber-tread-aircraft"],
     "life": ["--set", "mechanics.strain=fem", "--set", "mechanics.motion=linear", "--no-sensitivity"],
 }
 #: Words of commands whose arguments are a kind and a name.

@@ -35,6 +35,7 @@ COMMANDS = {
     "press": ["press", "STUDY"],
     "modes": ["modes", "STUDY"],
     "life": ["life", "STUDY"],
+    "wear": ["wear", "STUDY"],
     "roll": ["roll", "STUDY"],
     "strain": ["strain", "STUDY"],
     "mesh": ["show", "mesh", "STUDY"],

@@ -31,6 +31,7 @@ from tyrefem.materials.loss_tangent import Loss
 from tyrefem.materials.properties import PropertyTable, Softening, Sourced, columns
 from tyrefem.materials.road_friction import RoadFriction
 from tyrefem.materials.strain_dependence import StrainDependence
+from tyrefem.materials.wear import Wear
 from tyrefem.quantity import Unit
 
 Array = NDArray[np.float64]
@@ -285,6 +286,7 @@ class MaterialCard(Card):
     strain_dependence: StrainDependence | None = None
     expansion: ThermalExpansion | None = None
     fatigue: Fatigue | None = None
+    wear: Wear | None = None
     friction: RoadFriction | None = None
 
     @property

@@ -1,0 +1,99 @@
+"""`tyrefem wear`: wear of a study's tread by ring, and its worn section."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from tyrefem.cli.common import (
+    CaseOption,
+    ForceOption,
+    JsonOption,
+    QuietOption,
+    SetOption,
+    StudyArgument,
+    print_file,
+    settings,
+    warn,
+)
+from tyrefem.cli.progress import progress
+from tyrefem.errors import InputError
+from tyrefem.output.folder import results_folder
+
+#: Options with a quantity: name and unit.
+OPTIONS = {
+    "slip_angle": ("--slip-angle", "rad"),
+    "slip": ("--slip", "1"),
+    "camber": ("--camber", "rad"),
+    "friction": ("--friction", "1"),
+    "distance": ("--distance", "m"),
+}
+
+
+def wear(
+    study: StudyArgument,
+    slip_angle: Annotated[str, typer.Option(help="Slip angle, '0.5 deg': a mean of ordinary driving.")] = "0.5 deg",
+    slip: Annotated[str | None, typer.Option(help="Longitudinal slip, '1 %', positive drives; default: free.")] = None,
+    camber: Annotated[str, typer.Option(help="Camber, '1 deg'.")] = "0 deg",
+    friction: Annotated[str, typer.Option(help="Coefficient of friction.")] = "1.0",
+    distance: Annotated[
+        str | None, typer.Option(help="Write the section that is worn by this distance, '20000 km'.")
+    ] = None,
+    pictures: Annotated[bool, typer.Option(help="Draw the PNG picture.")] = True,
+    out: Annotated[Path | None, typer.Option("--out", help="Folder; default: results/STUDY-wear.")] = None,
+    force: ForceOption = False,
+    quiet: QuietOption = False,
+    as_json: JsonOption = False,
+    changes: SetOption = None,
+    case: CaseOption = None,
+) -> None:
+    """Wear of the tread per 1000 km by ring, from the friction power of the rolling tyre; the worn section."""
+    from tyrefem.api import study as load
+    from tyrefem.mechanics.rolling.roll import NEEDS, roll
+    from tyrefem.reports.wear import FILES, words, write_files
+    from tyrefem.wear.ring_wear import ring_wear, tread_table
+    from tyrefem.wear.worn_section import worn_section
+
+    texts = {"slip_angle": slip_angle, "slip": slip, "camber": camber, "friction": friction, "distance": distance}
+    given: dict[str, Any] = {name: _read(name, text) for name, text in texts.items() if text is not None}
+    kilometres = given.pop("distance", 0.0) / 1e3
+    loaded = load(study, settings(changes), case)
+    NEEDS.check(loaded)
+    tread_table(loaded)
+    warn(loaded.warnings)
+    with results_folder(out or Path("results") / f"{loaded.name}-wear", "wear", FILES, force=force) as folder:
+        try:
+            with progress(f"{loaded.name}: rolling", quiet=quiet or as_json):
+                rolled = roll(loaded, **given)
+            worn_off = ring_wear(rolled)
+            worn = worn_section(loaded, worn_off, kilometres) if distance is not None else None
+        except InputError as error:
+            option = OPTIONS.get(error.field or "", ("",))[0]
+            raise InputError(error.message, field=option) if option and not error.file else error from None
+        write_files(rolled, worn_off, folder, worn, pictures=pictures)
+    if as_json:
+        print_file(folder / "summary.json")
+        return
+    typer.echo(words(rolled, worn_off))
+    typer.echo(f"results in {folder}")
+
+
+def _read(name: str, text: str) -> float:
+    from tyrefem.quantity import Unit
+
+    option, unit = OPTIONS[name]
+    try:
+        return Unit(unit, gt=0)(text) if name == "distance" else Unit(unit)(text)
+    except InputError as error:
+        raise error.within(field=option) from None
+
+
+#: Place among the commands.
+ORDER = 48
+
+
+def register(app: typer.Typer) -> None:
+    """Add the command."""
+    app.command()(wear)
