@@ -40,12 +40,9 @@ def test_every_number_of_a_material_has_unit_and_source(name):
     data = read_toml(library.find("material", name))
     # tan delta is a ratio, plies are counted, an exponent is a power.
     pure = {("loss_tangent", "value"), ("cords", "loss_tangent"), ("cords", "plies")}
-    pure |= {
-        ("loss_tangent", "frequency", "exponent"),
-        ("fatigue", "exponent"),
-        ("fatigue", "ratio_rate"),
-        ("wear", "exponent"),
-    }
+    pure |= {("loss_tangent", "frequency", "exponent"), ("fatigue", "exponent"), ("fatigue", "ratio_rate")}
+    pure |= {("wear", "exponent")}
+    pure |= {("friction", name) for name in ("coefficient", "standstill", "width", "pressure_exponent")}
     assert [path for path in bare_numbers(data) if path not in pure] == []
     for key, table in data.items():
         if isinstance(table, dict):
