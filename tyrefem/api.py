@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from tyrefem.heating_test.readings import HeatingTest
     from tyrefem.inputs.study_parts import StudyParts
     from tyrefem.measured.cases import Case
+    from tyrefem.wear.ring_wear import RingWear
 
 Data = TypeVar("Data")
 
@@ -273,6 +274,17 @@ class Life(lives.LifeData):
 
 class RollingWheel(rolls.RolledStudy):
     """A study's tyre in steady rolling with friction, with `save`."""
+
+    def wear(self) -> RingWear:
+        """Wear of every ring of the tread, from its friction power; not compared with any measured tread.
+
+        Raises
+        ------
+        InputError : the card of region ``tread`` has no ``[wear]``.
+        """
+        from tyrefem.wear.ring_wear import ring_wear
+
+        return ring_wear(self)
 
     def save(self, folder: str | Path, *, pictures: bool = True, vtk: bool = True) -> Path:
         """Write ``roll.json``, ``contact.csv``, ``rings.csv``, ``contact.vtu``, pictures; return the folder.

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import csv
 import json
+import math
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
+import tyrefem as tf
 from tyrefem.cli import main
 from tyrefem.geometry import load
 
@@ -28,6 +30,9 @@ def test_the_command_writes_what_it_says(here: Path, capfd: pytest.CaptureFixtur
     assert (here / "out" / "wear.png").read_bytes().startswith(b"\x89PNG")
     assert "worn by 100 km" in (here / "out" / "worn-section.toml").read_text(encoding="utf-8")
     load(str(here / "out" / "worn-section.toml"))
+    changes = {"mesh.size": "14 mm", "materials.tread": "rubber-tread-aircraft"}
+    wear = tf.study("nasa-22x5.5-8pr", changes).roll(slip_angle=math.radians(0.5)).wear()
+    assert wear.mean * 1e6 == pytest.approx(summary["mean_wear_mm_per_1000_km"], rel=1e-9)
 
 
 @pytest.mark.parametrize(
