@@ -18,6 +18,7 @@ from tyrefem.heating_test import identification
 from tyrefem.inputs import study as studies
 from tyrefem.mechanics.footprint import natural_frequencies as vibrations
 from tyrefem.mechanics.footprint import press as presses
+from tyrefem.mechanics.rolling import press as rolling_press
 from tyrefem.mechanics.rolling import roll as rolls
 from tyrefem.mechanics.rolling import slip_curve as slip_curves
 from tyrefem.mechanics.strain_laws import strain_law
@@ -390,7 +391,7 @@ class Study(studies.StudyData):
         >>> tyre.footprint.motion, 5e3 < tyre.footprint.load < 9e3
         ('linear', True)
         """
-        return with_verbs(LoadedTyre, presses.press(self, **options))
+        return with_verbs(LoadedTyre, rolling_press.press(self, **options))
 
     def roll(self, **options: Any) -> RollingWheel:
         """Roll the tyre steadily with friction: forces, moments, slip, friction power by ring of the tread.

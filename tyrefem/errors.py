@@ -10,6 +10,10 @@ from pathlib import Path
 from tyrefem.interruption import Interrupted as Interrupted
 
 
+class ResultWarning(UserWarning):
+    """A result that may be in doubt; the message says where."""
+
+
 class InputError(ValueError):
     """Bad input from a person: a file, a field, a unit, a number outside its range.
 

@@ -15,7 +15,7 @@ from typer.core import TyperGroup
 
 import tyrefem
 from tyrefem.cli.line import fail
-from tyrefem.errors import InputError
+from tyrefem.errors import InputError, ResultWarning
 from tyrefem.estimates.work import LongWorkWarning
 from tyrefem.output import reading
 
@@ -103,13 +103,14 @@ def _warnings_shown() -> Iterator[None]:
         usual = warnings.showwarning
 
         def show(message: Warning | str, category: type[Warning], *rest: Any, **options: Any) -> None:
-            if issubclass(category, LongWorkWarning):
+            if issubclass(category, LongWorkWarning | ResultWarning):
                 fail(f"warning: {message}")
             else:
                 usual(message, category, *rest, **options)
 
         warnings.showwarning = show
         warnings.simplefilter("always", LongWorkWarning)
+        warnings.simplefilter("always", ResultWarning)
         yield
 
 

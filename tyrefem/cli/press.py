@@ -87,7 +87,7 @@ def press(
     from tyrefem.api import study as load_study
     from tyrefem.cli.critical_speed import print_critical_speeds
     from tyrefem.mechanics.footprint.press import NEEDS
-    from tyrefem.mechanics.footprint.press import press as pressed_by
+    from tyrefem.mechanics.rolling.press import press as pressed_by
     from tyrefem.reports.press import FILES, write_files
     from tyrefem.reports.press_places import cycle_places, read_place
 
@@ -122,7 +122,7 @@ def press(
         except InputError as error:
             raise _placed(error, given, loaded) from None
         write_files(result, folder, places, curve, pictures=pictures, vtk=vtk)
-    if result.footprint.unstable:
+    if result.footprint.unstable and result.turning is None:
         many = ", ".join(map(str, result.footprint.unstable))
         where = result.footprint.unstable_place
         fail(f"warning: the stiffness is negative in harmonics {many}: the footprint there is in doubt ({where})")
@@ -200,6 +200,8 @@ def _words(result: Pressed) -> str:
         f"{tyre.body.rings.n_nodes} nodes",
         f"  motion              {motion_words(footprint.motion, result.linearisation_error)}",
     ]
+    if result.turning is not None:
+        lines.append(f"  rolling             {result.turning.words}")
     if result.moduli is not None:
         secant = ", ".join(
             f"{region} {factor:.2f} at {100 * result.moduli.amplitudes[region]:.1f} %"

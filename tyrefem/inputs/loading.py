@@ -141,6 +141,7 @@ class LoadCase:
     by_deflection : the drive gives the deflection, which determines the load; else the drive gives the load.
     contact : contact from a strain law that presses the tyre, with its load and deflection. None: the study's laws
         give load, deflection and contact.
+    speed : of the tread through the footprint, m/s, where the strain cycle depends on it; else 0.
     """
 
     load: float
@@ -151,6 +152,7 @@ class LoadCase:
     footprint: FootprintLaw = TR_R_64
     by_deflection: bool = False
     contact: PressedContact | None = None
+    speed: float = 0.0
 
     @property
     def rolling_radius(self) -> float:

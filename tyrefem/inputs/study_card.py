@@ -133,6 +133,8 @@ class Mechanics(Card):
     ``motion``: footprint by finite elements in ``large`` motion, or ``linear`` about the inflated tyre: the quick look.
     ``moduli``: for ``fem``, the cards' moduli, or ``secant``, those at each region's strain amplitude under load
     (`footprint.secant_moduli`), where cards give ``strain_dependence``.
+    ``rolling``: for ``fem``, the tyre turns while it is pressed: centrifugal growth, inertia and, in linear motion, lag
+    of the strains by their loss.
     ``revolution``: for ``fem``, all harmonics with their frequencies, or one cycle as in the report. ``feedback``:
     feedback of temperature on the strain cycle; none without this table.
     """
@@ -146,6 +148,7 @@ class Mechanics(Card):
     membrane_shear: bool = True
     motion: FootprintMotion = "large"
     moduli: Literal["card", "secant"] = "card"
+    rolling: bool = False
     revolution: Literal["harmonics", "one-cycle"] = "harmonics"
     feedback: Feedback | None = None
 
@@ -153,6 +156,8 @@ class Mechanics(Card):
     def _energy_where_given(self) -> Mechanics:
         if self.strain == "given" and self.energy is None:
             raise InputError('strain = "given" needs the table [mechanics.energy]', field="strain")
+        if self.rolling and self.strain != "fem":
+            raise InputError('needs strain = "fem": the other strain laws do not turn', field="rolling")
         return self
 
 

@@ -56,6 +56,12 @@ def read_by_footprint(cards: Cards) -> dict[str, tuple[str, ...]]:
     return {region: (*fields[region], *(("strain_dependence",) if region in depend else ())) for region in fields}
 
 
+def read_by_rolling_footprint(cards: Cards) -> dict[str, tuple[str, ...]]:
+    """As `read_by_footprint`, and density and loss of every region."""
+    fields = read_by_footprint(cards)
+    return {region: tuple(dict.fromkeys((*tables, "density", "loss_tangent"))) for region, tables in fields.items()}
+
+
 def read_by_given(cards: Cards) -> dict[str, tuple[str, ...]]:
     """No data: the study gives the energies."""
     return {}
@@ -66,12 +72,15 @@ def read_by_unknown_law(cards: Cards) -> dict[str, tuple[str, ...]]:
     return {region: tuple(type(card).model_fields) for region, card in cards.items()}
 
 
+#: The law "fem" with ``mechanics.rolling``.
+FEM_ROLLING = "fem-rolling"
 #: Strain law -> region -> tables that it reads; a law without an entry may read all tables.
 READS: dict[str, Callable[[Cards], dict[str, tuple[str, ...]]]] = {
     "arcs": read_by_arcs,
     "barrel": read_by_elements,
     "fem": read_by_footprint,
     "given": read_by_given,
+    FEM_ROLLING: read_by_rolling_footprint,
 }
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,9 +14,9 @@ from tyrefem.brief import Brief, PickledFields
 from tyrefem.errors import InputError
 from tyrefem.inputs.drive import Drive
 from tyrefem.inputs.loading import GivenFootprint, LoadCase, load_case
-from tyrefem.inputs.motion import WheelMotion
+from tyrefem.inputs.motion import WheelMotion, motion_in
 from tyrefem.inputs.study import StudyData
-from tyrefem.materials.reads import ARCS, values_read
+from tyrefem.materials.reads import ARCS, FEM_ROLLING, values_read
 from tyrefem.mechanics.arc_geometry import BiasPlies
 from tyrefem.mechanics.arcs import ArcStiffness
 from tyrefem.mechanics.finite_elements import FiniteElements
@@ -167,13 +167,19 @@ def cycle_schedule(study: StudyData) -> CycleSchedule:
     """
     solver = KnotSolver(study)
     knots, cases, cycles = [], [], []
-    for number, phase in enumerate(study.card.drive.phases):
-        fractions = tuple(ramp_knots(phase.changes_load))
+    for number, _ in enumerate(study.card.drive.phases):
+        fractions = tuple(ramp_knots(changes_cycle(study, number)))
         solved = [solver.solve(number, fraction) for fraction in fractions]
         knots.append(fractions)
         cases.append(tuple(case for case, _ in solved))
         cycles.append(tuple(cycle for _, cycle in solved))
     return CycleSchedule(study.card.drive, tuple(knots), tuple(cases), tuple(cycles))
+
+
+def changes_cycle(study: StudyData, number: int) -> bool:
+    """True if the strain cycle changes during a phase: load, deflection, pressure, or a turning tyre's speed."""
+    phase = study.card.drive.phases[number]
+    return phase.changes_load or (study.card.mechanics.rolling and not phase.speed.constant)
 
 
 def check_cases(study: StudyData) -> None:
@@ -184,8 +190,8 @@ def check_cases(study: StudyData) -> None:
     InputError : the message names the phase.
     """
     solver, cheap = KnotSolver(study), not strain_law(study).by_elements
-    for number, phase in enumerate(study.card.drive.phases):
-        for fraction in ramp_knots(phase.changes_load):
+    for number, _ in enumerate(study.card.drive.phases):
+        for fraction in ramp_knots(changes_cycle(study, number)):
             case = solver.case(number, fraction)
             if cheap:
                 solver.cycle(number, case)
@@ -200,7 +206,8 @@ def same_cycles(study: StudyData, other: StudyData) -> bool:
     law = strain_law(study)
     if law.by_elements and study.card.mesh != other.card.mesh:
         return False
-    return values_read(law.name, study.materials) == values_read(law.name, other.materials)
+    reads = FEM_ROLLING if study.card.mechanics.rolling else law.name
+    return values_read(reads, study.materials) == values_read(reads, other.materials)
 
 
 def rated_case(study: StudyData) -> LoadCase:
@@ -285,7 +292,7 @@ def _load_case(study: StudyData, number: int, fraction: float, pressure_ratio: f
     # In this form a ratio of 1 leaves the pressure unchanged to the last bit.
     pressure = pressure + (pressure + ATMOSPHERE) * (pressure_ratio - 1)
     mechanics = study.card.mechanics
-    return load_case(
+    case = load_case(
         None if strain_law(study).presses else mechanics.load_law,
         section.rating,
         outer_radius=section.outer_diameter / 2,
@@ -295,3 +302,4 @@ def _load_case(study: StudyData, number: int, fraction: float, pressure_ratio: f
         drum_diameter=phase.drum_diameter,
         footprint=mechanics.footprint,
     )
+    return replace(case, speed=motion_in(phase, fraction).rolling_speed) if mechanics.rolling else case

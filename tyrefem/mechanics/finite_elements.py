@@ -161,9 +161,9 @@ class FiniteElements:
         if self.footprint is None:
             return np.zeros((1, *self.tyre.body.rings.weights.shape))
         from tyrefem.mechanics.footprint.strain_amplitude import StrainAmplitude
-        from tyrefem.mechanics.footprint.strain_harmonics import StrainHarmonics
+        from tyrefem.mechanics.rolling.turning import cycle_of
 
-        cycle = StrainHarmonics(self.footprint)
+        cycle = cycle_of(self.footprint)
         strain = StrainAmplitude(cycle, self.strain_laws)
         if self.one_cycle:
             largest = cycle.largest_energy()[None]
@@ -205,6 +205,8 @@ def provider(study: StudyData) -> Callable[..., FiniteElements]:
     ------
     InputError : when called: no equilibrium, or a load that the tyre cannot carry.
     """
+    if study.card.mechanics.rolling:
+        return _turning_provider(study)
     mechanics = study.card.mechanics
     factor, one_cycle = LOSS_FACTOR[mechanics.loss_convention], mechanics.revolution == "one-cycle"
     tyre = pressed_tyre(study)
@@ -214,5 +216,47 @@ def provider(study: StudyData) -> Callable[..., FiniteElements]:
         footprint = loaded.footprint(case, large=mechanics.motion == "large", near=start)
         laws = strain_laws(loaded.study.materials)
         return FiniteElements(loaded.inflated(case.pressure), footprint, case, factor, one_cycle, laws)
+
+    return cycle
+
+
+#: Number of load cases that a study's turning tyre keeps.
+REMEMBERED = 20
+
+
+def _turning_provider(study: StudyData) -> Callable[..., FiniteElements]:
+    """`provider` with ``mechanics.rolling``: the tyre turns at the load case's speed (`rolling.turning.turn`).
+
+    A tyre at rest, and one without load, is that of `provider`.
+    """
+    from tyrefem.mechanics.footprint.pressed_tyre import TOLERANCE, mechanical_mesh
+    from tyrefem.mechanics.footprint.road import Road
+    from tyrefem.mechanics.rolling.turning import turn
+
+    mechanics = study.card.mechanics
+    factor, one_cycle = LOSS_FACTOR[mechanics.loss_convention], mechanics.revolution == "one-cycle"
+    tyre = pressed_tyre(study)
+
+    @functools.lru_cache(REMEMBERED)
+    def turned(load: float | None, deflection: float | None, pressure: float, drum: float, speed: float) -> Any:
+        case = {"load": load, "deflection": deflection}
+        softened = study
+        if mechanics.moduli == "secant":
+            from tyrefem.mechanics.footprint.secant_moduli import under_load
+
+            softened = under_load(study, mechanical_mesh(study), pressure, Road(drum), **case)[0]
+        wanted: Any = {**case, "tolerance": TOLERANCE, "large": mechanics.motion == "large"}
+        return turn(softened, mechanical_mesh(study), pressure, Road(drum), speed, **wanted)
+
+    def cycle(case: LoadCase, near: FiniteElements | None = None) -> FiniteElements:
+        given = case.deflection if case.by_deflection else case.load
+        laws = strain_laws(study.materials)
+        if given <= 0 or not case.speed:
+            footprint = tyre.under(case).footprint(case, large=mechanics.motion == "large")
+            return FiniteElements(tyre.inflated(case.pressure), footprint, case, factor, one_cycle, laws)
+        wanted = (None, given) if case.by_deflection else (given, None)
+        turning = turned(*wanted, case.pressure, case.drum_diameter, case.speed)
+        laws = strain_laws(turning.study.materials)
+        return FiniteElements(turning.tyre, turning.footprint, case, factor, one_cycle, laws)
 
     return cycle

@@ -12,7 +12,8 @@ from tyrefem.estimates import memory
 from tyrefem.estimates import work as estimate
 from tyrefem.estimates.work import Estimate
 from tyrefem.geometry.meshing.expected import QUADRATIC, expected_nodes
-from tyrefem.mechanics.cycle_schedule import ramp_knots
+from tyrefem.inputs.motion import motion_in
+from tyrefem.mechanics.cycle_schedule import changes_cycle, ramp_knots
 from tyrefem.mechanics.footprint.footprint import QUICK_LOOK
 from tyrefem.mechanics.footprint.pressed_tyre import COARSER
 from tyrefem.mechanics.strain_laws import strain_law
@@ -64,12 +65,13 @@ class RunEstimate:
         if not strain_law(self.study).by_elements or self.mesh.file is not None:
             return Estimate()
         loads, pressures = set(), set()
-        for phase in card.drive.phases:
+        for number, phase in enumerate(card.drive.phases):
             carried = phase.load or phase.deflection
             assert carried is not None
-            for fraction in ramp_knots(phase.changes_load):
+            for fraction in ramp_knots(changes_cycle(self.study, number)):
                 pressures.add(phase.pressure.at(fraction))
-                loads.add((phase.pressure.at(fraction), carried.at(fraction), phase.drum_diameter))
+                speed = motion_in(phase, fraction).speed if card.mechanics.rolling else 0.0
+                loads.add((phase.pressure.at(fraction), carried.at(fraction), phase.drum_diameter, speed))
         feedback = card.mechanics.feedback
         again = 1 if feedback is None else self._runs * feedback.knots
         nodes = QUADRATIC * expected_nodes(self.study.section, COARSER * self.mesh.size, through=1)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.boundaries.contained_air import KELVIN
-from tyrefem.mechanics.cycle_schedule import CycleSchedule, KnotSolver, ramp_knots, warming_knots
+from tyrefem.mechanics.cycle_schedule import CycleSchedule, KnotSolver, changes_cycle, ramp_knots, warming_knots
 from tyrefem.mechanics.strain_cycle import solved_case
 
 if TYPE_CHECKING:
@@ -118,7 +118,8 @@ class WarmCycles:
         self.gas_start = law.start(drive.initial)
         self.softening = tuple(r for r, card in study.materials.items() if choice.modulus and card.softens)
         self.knots = tuple(
-            tuple(ramp_knots(True) if phase.changes_load else warming_knots(choice.knots)) for phase in drive.phases
+            tuple(ramp_knots(True) if changes_cycle(study, number) else warming_knots(choice.knots))
+            for number, _ in enumerate(drive.phases)
         )
         self._solvers: dict[Softened, KnotSolver] = {}
         self._kept: dict[tuple[int, int], _Knot] = {}
@@ -141,12 +142,12 @@ class WarmCycles:
     def schedule(self) -> CycleSchedule:
         """Load cases and strain cycles for a run; a constant phase has one strain cycle, as without feedback."""
         fractions, cases, cycles = [], [], []
-        for number, (phase, knots) in enumerate(zip(self.study.card.drive.phases, self.knots, strict=True)):
+        for number, knots in enumerate(self.knots):
             kept = [self._kept[number, place] for place in range(len(knots))]
             same = all(
                 (warm_cycle.case, warm_cycle.softened) == (kept[0].case, kept[0].softened) for warm_cycle in kept
             )
-            if same and not phase.changes_load:
+            if same and not changes_cycle(self.study, number):
                 kept, knots = kept[:1], (0.0,)
             fractions.append(knots)
             cases.append(tuple(solved_case(warm_cycle.cycle, warm_cycle.case) for warm_cycle in kept))

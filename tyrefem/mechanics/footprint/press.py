@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass
-from typing import TYPE_CHECKING, Any, get_args
+from typing import TYPE_CHECKING, Any, Protocol, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -54,6 +54,7 @@ class Pressed(Brief):
     tolerance : allowed change with the number of harmonics.
     path : (deflection, load), m and N, of the load steps in large motion; empty: linear about the inflated state.
     moduli : the secant moduli, if the study asks for them; ``study`` then has cards with these.
+    turning : the tyre that turns, with ``[mechanics] rolling``; None: it stands while it is pressed.
     path_harmonics : highest harmonic of each load step of ``path``.
     """
 
@@ -66,6 +67,7 @@ class Pressed(Brief):
     path: tuple[tuple[float, float], ...] = ()
     moduli: SecantModuli | None = None
     path_harmonics: tuple[int, ...] = ()
+    turning: TurningTyre | None = None
 
     def _title(self) -> str:
         return f"tyre of {self.study.name}"
@@ -99,15 +101,14 @@ class Pressed(Brief):
     @property
     def speed(self) -> float:
         """Speed at the start of the drive's first phase, m/s; at its end if it starts at rest."""
-        phase = self.study.card.drive.phases[0]
-        return motion_in(phase, 0.0).speed or motion_in(phase, 1.0).speed
+        return speed_of(self.study)
 
     @functools.cached_property
     def cycle(self) -> StrainHarmonics:
         """Strains over a revolution."""
         from tyrefem.mechanics.footprint.strain_harmonics import StrainHarmonics
 
-        return StrainHarmonics(self.footprint)
+        return StrainHarmonics(self.footprint) if self.turning is None else self.turning.cycle
 
     @property
     def linearisation_error(self) -> LinearisationError:
@@ -205,9 +206,51 @@ class Pressed(Brief):
             "tolerance": self.tolerance,
             "unstable_harmonics": list(footprint.unstable),
             "secant_moduli": None if self.moduli is None else asdict(self.moduli),
+            **({} if self.turning is None else {"rolling": self.turning.summary()}),
             "mesh": {**self.mesh.summary(), "nodes_of_nine_node_elements": self.tyre.body.rings.n_nodes},
             "versions": versions(),
         }
+
+
+class TurningTyre(Protocol):
+    """What a pressed tyre that turns gives (`rolling.turning.Turning`)."""
+
+    @property
+    def tyre(self) -> Inflation:
+        """Inflated and spinning."""
+
+    @property
+    def pressing(self) -> Pressing:
+        """Tyre and road."""
+
+    @property
+    def footprint(self) -> Footprint:
+        """The footprint."""
+
+    @property
+    def path(self) -> tuple[tuple[float, float], ...]:
+        """Load steps in large motion."""
+
+    @property
+    def path_harmonics(self) -> tuple[int, ...]:
+        """Their harmonics."""
+
+    @property
+    def cycle(self) -> StrainHarmonics:
+        """Strains over a revolution."""
+
+    @property
+    def words(self) -> str:
+        """One line."""
+
+    def summary(self) -> dict[str, Any]:
+        """Results in SI."""
+
+
+def speed_of(study: StudyData) -> float:
+    """Speed at the start of the drive's first phase, m/s; at its end if it starts at rest."""
+    phase = study.card.drive.phases[0]
+    return motion_in(phase, 0.0).speed or motion_in(phase, 1.0).speed
 
 
 def press(
@@ -220,6 +263,7 @@ def press(
     camber: float = 0.0,
     tolerance: float = TOLERANCE,
     motion: str | None = None,
+    turned: Callable[..., TurningTyre | None] | None = None,
 ) -> Pressed:
     """Inflate a study's tyre and press it on the road; defaults are the values at the start of the drive's first phase.
 
@@ -233,6 +277,7 @@ def press(
     tolerance : allowed change with the number of harmonics.
     motion : ``"large"``, or ``"linear"`` about the inflated state: the quick look. By default that of the study's
         ``[mechanics]``.
+    turned : makes the tyre that turns, or None for a drive at rest (`rolling.press`); by default it stands.
 
     Raises
     ------
@@ -283,6 +328,13 @@ def press(
     moduli = None
     if study.card.mechanics.moduli == "secant":
         study, moduli = under_load(study, mesh, pressure, road, load=load, deflection=deflection)
+    if turned is not None:
+        turning = turned(
+            study, mesh, pressure, road, load=load, deflection=deflection, tolerance=tolerance, large=large
+        )
+        if turning is not None:
+            parts = (turning.tyre, turning.pressing, turning.footprint, tolerance, turning.path)
+            return Pressed(study, mesh, *parts, moduli, turning.path_harmonics, turning)
     tyre = inflate(study, pressure, mesh)
     pressing = Pressing(tyre.state, road)
     if not large:

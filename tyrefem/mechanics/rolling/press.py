@@ -1,0 +1,29 @@
+"""`press` with `mechanics.rolling`: the tyre turns at the drive's speed."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from tyrefem.inputs.study import StudyData
+from tyrefem.mechanics.footprint import press as presses
+from tyrefem.mechanics.rolling.turning import Turning, turn
+
+
+def press(study: StudyData, **options: Any) -> presses.Pressed:
+    """As `footprint.press.press`; with ``[mechanics] rolling = true`` the tyre turns at the speed of the first phase.
+
+    It then has centrifugal growth, inertia and, in linear motion, lag by loss (`turning.turn`). A drive at rest is
+    pressed without.
+
+    Raises
+    ------
+    InputError : as `footprint.press.press`; a speed beyond the tread's critical speed.
+    """
+    if not study.card.mechanics.rolling:
+        return presses.press(study, **options)
+
+    def turned(pressed: StudyData, mesh: Any, pressure: float, road: Any, **wanted: Any) -> Turning | None:
+        speed = presses.speed_of(study)
+        return turn(pressed, mesh, pressure, road, speed, **wanted) if speed else None
+
+    return presses.press(study, **options, turned=turned)
