@@ -28,6 +28,12 @@ class FootprintByElements(StrainLaw):
 
     def assumption_of(self, study: StudyData) -> tuple[str, str]:
         """Large motion, or the linear one with what it leaves out."""
+        if study.card.mechanics.rolling:
+            return (
+                "A footprint that turns without friction",
+                "The section is inflated, spun and pressed on the road by Fourier harmonics with inertia, without "
+                "friction. In linear motion the strains lag by their loss.",
+            )
         if study.card.mechanics.motion == "large":
             return self.assumption
         return (

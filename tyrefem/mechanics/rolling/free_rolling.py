@@ -139,13 +139,9 @@ class LossyTyre(TyreOnRoad):
             gaps, normals = grid.gaps(moved, distance)
             if compliance is None or not math.isinf(self.road.drum_diameter):
                 compliance = grid.normal_compliance(normals)
+                _check_positive(compliance)
             free = gaps + np.einsum("kx,kx->k", normals, moved)
-            try:
-                forces, closed = contact_forces(compliance, free, closed, symmetric=False)
-            except (ValueError, np.linalg.LinAlgError):
-                raise InputError(
-                    "the rolling contact has no solution: the speed is beyond the tread's critical speed", field="speed"
-                ) from None
+            forces, closed = contact_forces(compliance, free, closed, symmetric=False)
             rolling = FreeRolling(self, grid, deflection, forces, normals)
             moved = rolling.moved
             change = float(np.abs(forces - before).max(initial=0.0))
@@ -153,6 +149,16 @@ class LossyTyre(TyreOnRoad):
                 return rolling
             before = forces
         raise InputError("the contact on the drum does not settle", field="drum_diameter")
+
+
+def _check_positive(compliance: Array) -> None:
+    """Raise `InputError` for a compliance without unique contact forces: its symmetric part must be positive."""
+    try:
+        np.linalg.cholesky((compliance + compliance.T) / 2)
+    except np.linalg.LinAlgError:
+        raise InputError(
+            "the rolling contact has no unique solution: the speed is beyond the tread's critical speed", field="speed"
+        ) from None
 
 
 @dataclass(frozen=True, eq=False)

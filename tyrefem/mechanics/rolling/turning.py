@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import warnings
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,6 +33,10 @@ Array = NDArray[np.float64]
 ROUGH = 24
 #: Harmonics at which resistance by offset and by loss agree within 1 %.
 RESISTANCE_HARMONICS = 180
+#: Relative difference of the two resistances above which they are in doubt: waves too short for the mesh.
+DOUBTFUL = 0.03
+#: Words of the error of a harmonic without positive stiffness.
+UNSTABLE = "not stable"
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +72,7 @@ class Turning(Brief):
         if self.lossy is None:
             return None
         harmonics = max(RESISTANCE_HARMONICS, self.footprint.harmonics)
-        return rolling_resistance(self.lossy, harmonics, self.footprint.deflection)
+        return rolling_resistance(self.lossy, harmonics, cast("LaggingFootprint", self.footprint).lagging.deflection)
 
     @property
     def centrifugal_growth(self) -> float:
@@ -84,6 +88,7 @@ class Turning(Brief):
             "pressure_offset_m": resistance and resistance.offset,
             "rolling_resistance_by_offset_N": resistance and resistance.by_offset,
             "rolling_resistance_by_loss_N": resistance and resistance.by_loss,
+            "rolling_resistance_balance": resistance and resistance.balance,
         }
 
     @property
@@ -93,9 +98,10 @@ class Turning(Brief):
         resistance = self.resistance
         if resistance is None:
             return f"{spin}; pressure without offset in large motion"
+        doubt = f" (in doubt: {resistance.balance:+.0%})" if abs(resistance.balance) > DOUBTFUL else ""
         return (
             f"{spin}; pressure {1e3 * resistance.offset:.2f} mm to the front; resistance {resistance.by_offset:.1f} N "
-            f"by offset, {resistance.by_loss:.1f} N by loss"
+            f"by offset, {resistance.by_loss:.1f} N by loss{doubt}"
         )
 
 
@@ -135,44 +141,67 @@ def turn(
 
     still = inflate(study, pressure, mesh)
     wanted: dict[str, Any] = {"load": load, "deflection": deflection}
-    radius = float(still.places[0].max())
     try:
-        rough = Pressing(inflate(study, pressure, mesh, angular_speed=_spin(speed, radius)).rolling_state, road)
+        spinning = inflate(study, pressure, mesh, angular_speed=_spin(speed, float(still.places[0].max())))
+        rough = Pressing(spinning.state, road)
         first = rough.at_load(load, ROUGH) if load is not None else rough.at_deflection(deflection or 0.0, ROUGH)
-        spin = _spin(speed, first.rolling_radius)
-        tyre = inflate(study, pressure, mesh, angular_speed=spin)
-        pressing = Pressing(tyre.rolling_state, road)
-        if large:
-            from tyrefem.mechanics.footprint.harmonic_balance import Balance
-
-            balance = Balance(pressing)
-            footprint = balance.solve(**wanted, tolerance=tolerance)
-        else:
-            footprint = pressing.solve(**wanted, tolerance=tolerance)
+        tyre = inflate(study, pressure, mesh, angular_speed=_spin(speed, first.rolling_radius))
     except InputError as error:
-        if "not stable" in error.message or error.field == "speed":
-            raise InputError(
-                f"{speed:.4g} m/s are beyond a critical speed of the tyre ({error.message}); "
-                "`tyrefem press --critical-speed` gives it",
-                field="speed",
-            ) from None
-        raise
-    if footprint.unstable:
-        many = f"{min(footprint.unstable)} to {max(footprint.unstable)}"
-        warnings.warn(
-            f"at {speed:.4g} m/s waves of {many} round the wheel stand or are faster ({footprint.unstable_place}): the "
-            "speed is beyond their critical speed, and only loss limits them",
-            ResultWarning,
-            stacklevel=2,
-        )
+        raise _beyond(speed, error) if error.field == "speed" else error from None
+    pressing = Pressing(tyre.rolling_state, road)
     if large:
+        from tyrefem.mechanics.footprint.harmonic_balance import Balance
+
+        balance = Balance(pressing)
+        try:
+            footprint = balance.solve(**wanted, tolerance=tolerance)
+        except InputError as error:
+            raise _beyond(speed, error) if UNSTABLE in error.message else error from None
+        _warn(speed, footprint)
         path = (tuple(balance.path), tuple(balance.path_harmonics))
         return Turning(study, tyre, pressing, footprint, speed, still.radius_growth, None, *path)
+    try:
+        footprint = pressing.solve(**wanted, tolerance=tolerance)
+        _warn(speed, footprint)
+    except InputError as error:
+        if UNSTABLE not in error.message:
+            raise
+        # Loss alone limits such waves: the contact without inertia stands in for that without loss.
+        footprint = Pressing(tyre.state, road).solve(**wanted, tolerance=tolerance)
+        _warn_of(speed, error.message)
     lossy = LossyTyre(pressing.state, road, lossy_harmonics(study, tyre, footprint))
-    lagging = lossy.at_deflection(footprint.deflection, footprint.harmonics)
+    try:
+        if load is None:
+            lagging = lossy.at_deflection(footprint.deflection, footprint.harmonics)
+        else:
+            lagging = lossy.at_load(load, footprint.harmonics, footprint.deflection)
+    except InputError as error:
+        raise _beyond(speed, error) from None
     parts = {part.name: getattr(footprint, part.name) for part in fields(Footprint)}
-    lagging_footprint = LaggingFootprint(**parts, rolling=lagging, travel=speed / spin)
+    lagging_footprint = LaggingFootprint(**parts, rolling=lagging, travel=speed / tyre.angular_speed)
     return Turning(study, tyre, pressing, lagging_footprint, speed, still.radius_growth, lossy)
+
+
+def _beyond(speed: float, error: InputError) -> InputError:
+    return InputError(
+        f"{speed:.4g} m/s are beyond a critical speed of the tyre ({error.message}); "
+        "`tyrefem press --critical-speed` gives it",
+        field="speed",
+    )
+
+
+def _warn(speed: float, footprint: Footprint) -> None:
+    if footprint.unstable:
+        many = f"{min(footprint.unstable)} to {max(footprint.unstable)}"
+        _warn_of(speed, f"harmonics {many}; {footprint.unstable_place}")
+
+
+def _warn_of(speed: float, where: str) -> None:
+    warnings.warn(
+        f"{speed:.4g} m/s are beyond the critical speed of waves that only loss limits ({where})",
+        ResultWarning,
+        stacklevel=3,
+    )
 
 
 def _spin(speed: float, radius: float) -> float:
