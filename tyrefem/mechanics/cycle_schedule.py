@@ -179,7 +179,8 @@ def cycle_schedule(study: StudyData) -> CycleSchedule:
 def changes_cycle(study: StudyData, number: int) -> bool:
     """True if the strain cycle changes during a phase: load, deflection, pressure, or a turning tyre's speed."""
     phase = study.card.drive.phases[number]
-    return phase.changes_load or (study.card.mechanics.rolling and not phase.speed.constant)
+    speeds = [motion_in(phase, fraction).rolling_speed for fraction in (0.0, 1.0)]
+    return phase.changes_load or (study.card.mechanics.rolling and speeds[0] != speeds[1])
 
 
 def check_cases(study: StudyData) -> None:

@@ -229,6 +229,7 @@ def _turning_provider(study: StudyData) -> Callable[..., FiniteElements]:
 
     A tyre at rest, and one without load, is that of `provider`.
     """
+    from tyrefem.mechanics.footprint.press import PressOrder
     from tyrefem.mechanics.footprint.pressed_tyre import TOLERANCE, mechanical_mesh
     from tyrefem.mechanics.footprint.road import Road
     from tyrefem.mechanics.rolling.turning import turn
@@ -245,8 +246,9 @@ def _turning_provider(study: StudyData) -> Callable[..., FiniteElements]:
             from tyrefem.mechanics.footprint.secant_moduli import under_load
 
             softened = under_load(study, mechanical_mesh(study), pressure, Road(drum), **case)[0]
-        wanted: Any = {**case, "tolerance": TOLERANCE, "large": mechanics.motion == "large"}
-        return turn(softened, mechanical_mesh(study), pressure, Road(drum), speed, **wanted)
+        large = mechanics.motion == "large"
+        mesh = mechanical_mesh(study)
+        return turn(PressOrder(softened, mesh, pressure, Road(drum), load, deflection, TOLERANCE, large), speed)
 
     def cycle(case: LoadCase, near: FiniteElements | None = None) -> FiniteElements:
         given = case.deflection if case.by_deflection else case.load

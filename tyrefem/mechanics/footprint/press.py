@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any, Protocol, get_args
 
@@ -263,7 +263,6 @@ def press(
     camber: float = 0.0,
     tolerance: float = TOLERANCE,
     motion: str | None = None,
-    turned: Callable[..., TurningTyre | None] | None = None,
 ) -> Pressed:
     """Inflate a study's tyre and press it on the road; defaults are the values at the start of the drive's first phase.
 
@@ -277,7 +276,6 @@ def press(
     tolerance : allowed change with the number of harmonics.
     motion : ``"large"``, or ``"linear"`` about the inflated state: the quick look. By default that of the study's
         ``[mechanics]``.
-    turned : makes the tyre that turns, or None for a drive at rest (`rolling.press`); by default it stands.
 
     Raises
     ------
@@ -292,6 +290,60 @@ def press(
     from tyrefem.mechanics.footprint.contact import Pressing
     from tyrefem.mechanics.solid.inflation import inflate
 
+    options: dict[str, Any] = {"load": load, "deflection": deflection, "drum_diameter": drum_diameter, "camber": camber}
+    order = press_order(study, pressure=pressure, **options, tolerance=tolerance, motion=motion)
+    tyre = inflate(order.study, order.pressure, order.mesh)
+    pressing = Pressing(tyre.state, order.road)
+    if not order.large:
+        footprint = pressing.solve(**order.wanted)
+        return Pressed(order.study, order.mesh, tyre, pressing, footprint, order.tolerance, moduli=order.moduli)
+    from tyrefem.mechanics.footprint.harmonic_balance import Balance
+
+    balance = Balance(pressing)
+    footprint = balance.solve(**order.wanted)
+    path = (tuple(balance.path), order.moduli, tuple(balance.path_harmonics))
+    return Pressed(order.study, order.mesh, tyre, pressing, footprint, order.tolerance, *path)
+
+
+@dataclass(frozen=True)
+class PressOrder:
+    """What is to be pressed. Made by `press_order`.
+
+    Parameters
+    ----------
+    study : with the secant moduli, if it asks for them. mesh : the mechanical mesh. pressure : Pa. road : the road.
+    load, deflection : N or m, one of them. tolerance : with the number of harmonics. large : large motion.
+    moduli : the secant moduli.
+    """
+
+    study: StudyData
+    mesh: TyreMesh
+    pressure: float
+    road: Road
+    load: float | None
+    deflection: float | None
+    tolerance: float
+    large: bool
+    moduli: SecantModuli | None = None
+
+    @property
+    def wanted(self) -> dict[str, Any]:
+        """What a solver of footprints takes."""
+        return {"load": self.load, "deflection": self.deflection, "tolerance": self.tolerance}
+
+
+def press_order(
+    study: StudyData,
+    *,
+    pressure: float | None = None,
+    load: float | None = None,
+    deflection: float | None = None,
+    drum_diameter: float | None = None,
+    camber: float = 0.0,
+    tolerance: float = TOLERANCE,
+    motion: str | None = None,
+) -> PressOrder:
+    """Checked options of `press`, with the defaults of the drive's first phase; raises the same errors."""
     NEEDS.check(study)
     motion = study.card.mechanics.motion if motion is None else motion
     if motion not in MOTIONS:
@@ -328,22 +380,4 @@ def press(
     moduli = None
     if study.card.mechanics.moduli == "secant":
         study, moduli = under_load(study, mesh, pressure, road, load=load, deflection=deflection)
-    if turned is not None:
-        turning = turned(
-            study, mesh, pressure, road, load=load, deflection=deflection, tolerance=tolerance, large=large
-        )
-        if turning is not None:
-            parts = (turning.tyre, turning.pressing, turning.footprint, tolerance, turning.path)
-            return Pressed(study, mesh, *parts, moduli, turning.path_harmonics, turning)
-    tyre = inflate(study, pressure, mesh)
-    pressing = Pressing(tyre.state, road)
-    if not large:
-        footprint = pressing.solve(load=load, deflection=deflection, tolerance=tolerance)
-        return Pressed(study, mesh, tyre, pressing, footprint, tolerance, moduli=moduli)
-    from tyrefem.mechanics.footprint.harmonic_balance import Balance
-
-    balance = Balance(pressing)
-    footprint = balance.solve(load=load, deflection=deflection, tolerance=tolerance)
-    return Pressed(
-        study, mesh, tyre, pressing, footprint, tolerance, tuple(balance.path), moduli, tuple(balance.path_harmonics)
-    )
+    return PressOrder(study, mesh, pressure, road, load, deflection, tolerance, large, moduli)

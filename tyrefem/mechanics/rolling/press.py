@@ -6,7 +6,7 @@ from typing import Any
 
 from tyrefem.inputs.study import StudyData
 from tyrefem.mechanics.footprint import press as presses
-from tyrefem.mechanics.rolling.turning import Turning, turn
+from tyrefem.mechanics.rolling.turning import turn
 
 
 def press(study: StudyData, **options: Any) -> presses.Pressed:
@@ -22,8 +22,10 @@ def press(study: StudyData, **options: Any) -> presses.Pressed:
     if not study.card.mechanics.rolling:
         return presses.press(study, **options)
 
-    def turned(pressed: StudyData, mesh: Any, pressure: float, road: Any, **wanted: Any) -> Turning | None:
-        speed = presses.speed_of(study)
-        return turn(pressed, mesh, pressure, road, speed, **wanted) if speed else None
-
-    return presses.press(study, **options, turned=turned)
+    speed = presses.speed_of(study)
+    if not speed:
+        return presses.press(study, **options)
+    order = presses.press_order(study, **options)
+    turning = turn(order, speed)
+    parts = (turning.tyre, turning.pressing, turning.footprint, order.tolerance, turning.path)
+    return presses.Pressed(order.study, order.mesh, *parts, order.moduli, turning.path_harmonics, turning)

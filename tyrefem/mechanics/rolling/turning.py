@@ -23,9 +23,8 @@ from tyrefem.mechanics.rolling.lagging_strains import LaggingFootprint, LaggingS
 from tyrefem.mechanics.rolling.lossy_harmonics import LossyHarmonics
 
 if TYPE_CHECKING:
-    from tyrefem.geometry.meshing.mesh import TyreMesh
     from tyrefem.inputs.study import StudyData
-    from tyrefem.mechanics.footprint.road import Road
+    from tyrefem.mechanics.footprint.press import PressOrder
     from tyrefem.mechanics.solid.inflation import Inflation
 
 Array = NDArray[np.float64]
@@ -110,18 +109,7 @@ def cycle_of(footprint: Footprint) -> StrainHarmonics:
     return LaggingStrains(footprint) if isinstance(footprint, LaggingFootprint) else StrainHarmonics(footprint)
 
 
-def turn(
-    study: StudyData,
-    mesh: TyreMesh,
-    pressure: float,
-    road: Road,
-    speed: float,
-    *,
-    load: float | None = None,
-    deflection: float | None = None,
-    tolerance: float,
-    large: bool,
-) -> Turning:
+def turn(order: PressOrder, speed: float) -> Turning:
     """Spin a study's tyre, press it on the road with inertia and, in linear motion, let it lag by its loss.
 
     W = speed / rolling radius, first of the free tyre, then of a rough linear footprint. tan delta is that of the cards
@@ -130,8 +118,8 @@ def turn(
 
     Parameters
     ----------
-    pressure : Pa. speed : of the tread through the footprint, m/s, positive. load, deflection : N or m, one of them.
-    tolerance : of the number of harmonics. large : large motion, with inertia but without lag.
+    order : study, mesh, pressure, road, load or deflection, tolerance; in large motion with inertia but without lag.
+    speed : of the tread through the footprint, m/s, positive.
 
     Raises
     ------
@@ -139,35 +127,35 @@ def turn(
     """
     from tyrefem.mechanics.solid.inflation import inflate
 
+    study, mesh, pressure, road, load = order.study, order.mesh, order.pressure, order.road, order.load
     still = inflate(study, pressure, mesh)
-    wanted: dict[str, Any] = {"load": load, "deflection": deflection}
     try:
         spinning = inflate(study, pressure, mesh, angular_speed=_spin(speed, float(still.places[0].max())))
         rough = Pressing(spinning.state, road)
-        first = rough.at_load(load, ROUGH) if load is not None else rough.at_deflection(deflection or 0.0, ROUGH)
+        first = rough.at_load(load, ROUGH) if load is not None else rough.at_deflection(order.deflection or 0.0, ROUGH)
         tyre = inflate(study, pressure, mesh, angular_speed=_spin(speed, first.rolling_radius))
     except InputError as error:
         raise _beyond(speed, error) if error.field == "speed" else error from None
     pressing = Pressing(tyre.rolling_state, road)
-    if large:
+    if order.large:
         from tyrefem.mechanics.footprint.harmonic_balance import Balance
 
         balance = Balance(pressing)
         try:
-            footprint = balance.solve(**wanted, tolerance=tolerance)
+            footprint = balance.solve(**order.wanted)
         except InputError as error:
             raise _beyond(speed, error) if UNSTABLE in error.message else error from None
         _warn(speed, footprint)
         path = (tuple(balance.path), tuple(balance.path_harmonics))
         return Turning(study, tyre, pressing, footprint, speed, still.radius_growth, None, *path)
     try:
-        footprint = pressing.solve(**wanted, tolerance=tolerance)
+        footprint = pressing.solve(**order.wanted)
         _warn(speed, footprint)
     except InputError as error:
         if UNSTABLE not in error.message:
             raise
         # Loss alone limits such waves: the contact without inertia stands in for that without loss.
-        footprint = Pressing(tyre.state, road).solve(**wanted, tolerance=tolerance)
+        footprint = Pressing(tyre.state, road).solve(**order.wanted)
         _warn_of(speed, error.message)
     lossy = LossyTyre(pressing.state, road, lossy_harmonics(study, tyre, footprint))
     try:
