@@ -179,8 +179,9 @@ def cycle_schedule(study: StudyData) -> CycleSchedule:
 def changes_cycle(study: StudyData, number: int) -> bool:
     """True if the strain cycle changes during a phase: load, deflection, pressure, or a turning tyre's speed."""
     phase = study.card.drive.phases[number]
-    speeds = [motion_in(phase, fraction).rolling_speed for fraction in (0.0, 1.0)]
-    return phase.changes_load or (study.card.mechanics.rolling and speeds[0] != speeds[1])
+    if phase.changes_load or not study.card.mechanics.rolling:
+        return phase.changes_load
+    return motion_in(phase, 0.0).rolling_speed != motion_in(phase, 1.0).rolling_speed
 
 
 def check_cases(study: StudyData) -> None:
