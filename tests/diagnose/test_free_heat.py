@@ -65,6 +65,17 @@ def test_a_source_that_is_far_too_strong_is_no_explanation() -> None:
     assert not heat.explains(DEFAULT.free_heat_lead)
 
 
+def test_a_misfit_that_is_far_too_large_costs_no_further_fits() -> None:
+    problem = problem_of(law({"hot": 80.0}))
+    heat = free_heat(problem, (HOT,), 0.0)
+    assert heat is not None
+    assert heat.p_value < 1e-10
+    assert heat.lead == math.inf
+    assert not heat.explains(DEFAULT.free_heat_lead)
+    asked = [values for values in problem.predictions.evaluations.points() if values.get("hot")]
+    assert asked == []
+
+
 def test_heat_at_the_stations_is_no_effect_at_a_narrow_place() -> None:
     heat = free_heat(problem_of(law({"hot": 30.0})), (HOT,), 0.0)
     assert heat is not None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from tyrefem.brief import Brief
@@ -19,7 +20,8 @@ USUAL_P = 0.01
 class FreeHeat(Brief):
     """Sources of unknown origin, fitted with the full model.
 
-    ``p_value``: probability of their misfit without effects. ``lead``: what the effects add to their ln evidence, nats.
+    ``p_value``: probability of their misfit without effects. ``lead``: what the effects add to their ln evidence, nats;
+    infinite if the misfit is too large for a comparison.
     """
 
     p_value: float
@@ -52,6 +54,9 @@ def free_heat(problem: SelectionProblem, members: Members, size: float) -> FreeH
     heat = missing_heat_beside(residuals, sources, 1.0, size)
     here = residuals.beside(heat.nuisance, heat.shared_error, heat.offset)
     (first,) = first_fits(here, predictions, [()], None, problem._count)
+    if not first.worth_settling and not first.settled:
+        # No further step can explain such a misfit.
+        return FreeHeat(first.p_value, math.inf)
     (alone,) = continued(here, predictions, [first], problem._count)
     alone = max(alone, first, key=lambda fit: fit.log_evidence)
     (beside,) = first_fits(here, predictions, [members], {members: alone}, problem._count)
