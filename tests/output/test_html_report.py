@@ -102,10 +102,12 @@ def test_materials_name_their_sources_and_mark_estimates(result, written):
         assert card.title in text
         assert " ".join(card.conductivity.source.split()) in text
     guesses = written.count('<span class="guess">')
+    # A run does not use the tables of life, wear and friction; its report does not list them.
+    of_other_commands = {"fatigue", "wear", "friction"}
     marked = [
         name
         for card in result.study.materials.values()
-        for name in type(card).model_fields
+        for name in sorted(set(type(card).model_fields) - of_other_commands)
         if "estimate" in (getattr(getattr(card, name), "source", None) or "").lower()
     ]
     assert guesses == len(marked) > 0
