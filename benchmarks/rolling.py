@@ -163,12 +163,12 @@ def measured() -> None:
 
 def speed() -> None:
     """Print processor seconds of a footprint, a point and a curve of 20 points."""
-    study = tf.study("passenger-205-55r16", {"mesh.size": "5 mm"})
+    study = tf.study("passenger-205-55r16", {"mesh.size": "2.5 mm"})
     start = time.process_time()
     wheel = wheel_on_road(study, load=4000.0)
     nodes = wheel.pressed.tyre.body.rings.n_nodes
     print(f"{nodes} nodes, inflated and pressed: {time.process_time() - start:.1f} s")
-    for harmonics in (40, 80):
+    for harmonics in (40,):
         start = time.process_time()
         near = wheel.free(harmonics)
         print(f"{harmonics} harmonics, compliance and free rolling: {time.process_time() - start:.1f} s")

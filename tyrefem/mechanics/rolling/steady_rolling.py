@@ -126,7 +126,7 @@ class SteadyRolling(Brief):
         last, before = start, None
         front = None if start is None else start.before
         for number in range(ROUNDS):
-            rolled = self._solved(grid, motion, given, guess, last)
+            rolled = self._solved(grid, motion, given, guess, last, front)
             wider = grid.around(rolled.contact.forces[:, 0] > 0, 1)
             guess, last = (rolled.deflection, rolled.travel), rolled
             if wider is not grid:
@@ -135,15 +135,16 @@ class SteadyRolling(Brief):
                 continue
             forces = rolled.contact.forces
             change = math.inf if before is None else float(np.abs(forces - before).max())
-            fronted = self._fronted(grid, rolled, front) or number >= FRONT_ROUNDS
-            front = rolled.before
+            fronted = self._fronted(rolled, front) or number >= FRONT_ROUNDS
+            # A front that goes to and fro between two steps is left where it is.
+            front = front if fronted else rolled.before
             if fronted and (self._closed(motion) or change <= SETTLED * float(np.abs(forces).max())):
                 self.pressing.check(rolled.deflection)
                 return rolled
             before = forces
         raise InputError(f"forces, geometry and friction of the rolling contact do not settle in {ROUNDS} rounds")
 
-    def _fronted(self, grid: RollingGrid, rolled: RolledTyre, used: Array | None) -> bool:
+    def _fronted(self, rolled: RolledTyre, used: Array | None) -> bool:
         """True if the front of the contact is where a solution took it to be."""
         if self.friction == 0:
             return True
@@ -172,13 +173,14 @@ class SteadyRolling(Brief):
         given: RollingLoads,
         guess: tuple[float, float],
         last: RolledTyre | None,
+        front: Array | None,
     ) -> RolledTyre:
-        """Contact with geometry and friction of the ``last`` solution."""
+        """Contact with geometry and friction of the ``last`` solution; ``front``: `RolledTyre.before`."""
         moved = np.zeros((grid.n_points, 3)) if last is None else last.moved
         gaps, normals = grid.gaps(moved, self.reach - (given.deflection or 0.0))
         axes = grid.road_axes(normals)
         gaps = gaps + np.einsum("kx,kx->k", normals, moved)
-        before = None if last is None or self.friction == 0 else last.before
+        before = None if self.friction == 0 else front
         compliance = grid.compliance(axes) if grid.turns(axes) is not None else grid.level_compliance
         body = ContactBody(compliance, grid.upstream, grid.turns(axes), before)
         free = grid.free_places
