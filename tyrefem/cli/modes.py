@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -35,6 +35,9 @@ def modes(
     amplitude: Annotated[
         str, typer.Option(help="Shear strain amplitude of the vibration, for cards with strain_dependence.")
     ] = "0.1 %",
+    speed: Annotated[
+        str | None, typer.Option(help="Speed at which the tyre rotates, e.g. '80 km/h': forward and backward waves.")
+    ] = None,
     pictures: Annotated[bool, typer.Option(help="Draw the PNG picture.")] = True,
     out: Annotated[Path | None, typer.Option("--out", help="Folder; default: results/STUDY-modes.")] = None,
     force: ForceOption = False,
@@ -43,13 +46,15 @@ def modes(
     changes: SetOption = None,
     case: CaseOption = None,
 ) -> None:
-    """Natural frequencies and modes of the inflated, unloaded tyre that does not roll, with its rim held."""
+    """Natural frequencies and modes of the inflated, unloaded tyre, with its rim held; with --speed it rotates."""
     from tyrefem.api import study as load
     from tyrefem.mechanics.footprint.natural_frequencies import NEEDS, natural_frequencies
+    from tyrefem.mechanics.rolling.rotating_modes import rotating_frequencies
     from tyrefem.quantity import Unit
     from tyrefem.reports.modes import FILES, write_files
 
     given = None if pressure is None else _quantity("--pressure", pressure, Unit("Pa", gt=0))
+    turning = None if speed is None else _quantity("--speed", speed, Unit("m/s", gt=0))
     strain = _quantity("--amplitude", amplitude, Unit("1", gt=0, le=1))
     loaded = load(study, settings(changes), case)
     NEEDS.check(loaded)
@@ -59,7 +64,11 @@ def modes(
         progress(f"{loaded.name}: natural frequencies", quiet=quiet or as_json),
     ):
         try:
-            result = natural_frequencies(loaded, range(highest + 1), count, pressure=given, amplitude=strain)
+            options: dict[str, Any] = {"count": count, "pressure": given, "amplitude": strain}
+            if turning is None:
+                result = natural_frequencies(loaded, range(highest + 1), **options)
+            else:
+                result = rotating_frequencies(loaded, turning, range(highest + 1), **options)
         except InputError as error:
             field = "drive.phases.0.pressure" if error.field == "pressure" and given is None else error.field
             placed = InputError(error.message, field=field, file=error.file or loaded.file)
@@ -80,17 +89,24 @@ def _quantity(option: str, text: str, unit: Unit) -> float:
 
 
 def _words(result: NaturalFrequencies) -> str:
+    from tyrefem.mechanics.rolling.rotating_modes import RotatingFrequencies, RotatingMode
+
+    turns = isinstance(result, RotatingFrequencies)
     lines = [
         result.study.title,
         f"  inflated to {result.tyre.pressure / 1e3:.1f} kPa, rim held, no load; mass {result.mass:.2f} kg",
         _moduli(result),
-        f"  {'waves':>5} {'Hz':>8}  {'motion of the belt':24} radial  lateral  around",
+        f"  {'waves':>5} {'Hz':>8}  {'motion of the belt':24} radial  lateral  around"
+        + ("  in the rubber, Hz from the axle" if turns else ""),
     ]
+    if isinstance(result, RotatingFrequencies):
+        lines.insert(2, f"  rotates with {result.angular_speed:.4g} rad/s: frequencies in the rubber's frame")
     for natural in result.modes:
         shares = natural.shares
         lines.append(
             f"  {natural.mode.harmonic:5d} {natural.mode.frequency:8.2f}  {natural.name:24} {shares['radial']:6.0%}"
             f" {shares['lateral']:8.0%} {shares['circumferential']:7.0%}"
+            + (f"  {natural.direction:8} {natural.axle_frequency:8.2f}" if isinstance(natural, RotatingMode) else "")
         )
     return "\n".join(lines)
 

@@ -71,7 +71,7 @@ def picture(result: NaturalFrequencies) -> bytes:
             axes.add_collection(image)
         axes.autoscale_view()
         axes.set_aspect("equal")
-        axes.set_title(f"n = {natural.mode.harmonic}: {natural.name}\n{natural.mode.frequency:.1f} Hz", fontsize=9)
+        axes.set_title(natural.label, fontsize=9)
     if image is not None:
         bar = figure.colorbar(image, ax=grid.tolist(), shrink=0.6)
         bar.set_label("circumferential over largest displacement", fontsize=8)

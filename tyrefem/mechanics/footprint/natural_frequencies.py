@@ -62,6 +62,11 @@ class NaturalMode:
     name: str
     shares: Mapping[str, float]
 
+    @property
+    def label(self) -> str:
+        """For a picture."""
+        return f"n = {self.mode.harmonic}: {self.name}\n{self.mode.frequency:.1f} Hz"
+
     def row(self) -> dict[str, Any]:
         """A row of the table."""
         return {"harmonic": self.mode.harmonic, "frequency_Hz": self.mode.frequency, "name": self.name, **self.shares}
@@ -200,7 +205,7 @@ def natural_frequencies(
     for n in sorted(orders):
         for mode in vibration.modes(n, count):
             shares = vibration.shares(mode, belt)
-            modes.append(NaturalMode(mode, _name(mode, vibration.rigidity(mode, belt), shares), shares))
+            modes.append(NaturalMode(mode, motion_name(mode, vibration.rigidity(mode, belt), shares), shares))
     return NaturalFrequencies(study, tyre, vibration, tuple(modes), stiffening, amplitude)
 
 
@@ -235,7 +240,8 @@ def belt_elements(tyre: Inflation) -> Indices:
     return np.flatnonzero(crown).astype(np.int64)
 
 
-def _name(mode: Mode, rigidity: Mapping[str, float], shares: Mapping[str, float]) -> str:
+def motion_name(mode: Mode, rigidity: Mapping[str, float], shares: Mapping[str, float]) -> str:
+    """Name of a motion of the belt, by its rigidity and its shares of energy."""
     best = max(rigidity, key=rigidity.__getitem__, default="")
     if shares["belt"] < AT_REST:
         return "sidewall"
