@@ -66,3 +66,16 @@ def test_it_says_how_much_stiffer_small_vibrations_are(here: Path, capfd: pytest
     assert main([*line, "--force", "--amplitude", "2 %", "--set", f"materials.sidewall={table}"]) == 0
     # G'(2 %) = 1.35 MPa, G'(10 %) = 0.7 + 1.3/(1 + 5^1.2) = 0.8646 MPa.
     assert "moduli at the strain amplitude 2 %, over those of the cards: sidewall 1.56" in capfd.readouterr().out
+
+
+def test_a_rotating_tyre_has_forward_and_backward_waves(here: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    line = ["modes", STUDY, "--highest", "2", "--speed", "100 km/h", "--out", "out", *COARSE]
+    assert main(line) == 0
+    words = capfd.readouterr().out
+    assert "frequencies in the rubber's frame" in words
+    assert " forward " in words
+    with (here / "out" / "modes.csv").open(encoding="utf-8") as lines:
+        rows = list(csv.DictReader(lines))
+    assert {row["direction"] for row in rows} == {"standing", "forward", "backward"}
+    assert all(float(row["axle_frequency_Hz"]) > 0 for row in rows)
+    assert (here / "out" / "modes.png").read_bytes().startswith(b"\x89PNG")

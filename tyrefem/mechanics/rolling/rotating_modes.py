@@ -114,6 +114,11 @@ class RotatingMode(NaturalMode):
     direction: str = "standing"
     axle_frequency: float = 0.0
 
+    @property
+    def label(self) -> str:
+        """For a picture."""
+        return f"{super().label} {self.direction}, {self.axle_frequency:.1f} Hz from the axle"
+
     def row(self) -> dict[str, Any]:
         """A row of the table."""
         row = super().row()
