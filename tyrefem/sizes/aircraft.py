@@ -14,6 +14,11 @@ from tyrefem.sizes.rules import UNITS, Rules
 PSI = UNITS["psi"][1]
 #: Deflection at the rated load over the section height, of sizes without a row (estimate: usual for aircraft tyres).
 DEFLECTION = 0.32
+#: Modulus of the bead between plies and flange in plane strain, Pa, and its source.
+BEAD_MODULUS = (
+    48e6,
+    "estimate: four times 12 MPa of shear, between fillers (14 MPa) and the thinner rim strips (5 MPa)",
+)
 
 
 def aircraft_numbers(size: TyreSize, rule: Rules, plies: int) -> tuple[Rim, float]:

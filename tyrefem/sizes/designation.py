@@ -21,10 +21,17 @@ _METRIC = re.compile(
 _TRUCK = re.compile(
     rf"(?P<width>\d{{1,2}}(?:\.\d{{1,2}})?)(?P<build>R)(?P<rim>\d{{2}}\.5){_SERVICE}{_PLIES}", re.IGNORECASE
 )
+#: Inch sizes for flat rims with 5 degree seats, with tube or flap: ``12.00R20``.
+_FLAT_RIM = re.compile(
+    rf"(?P<width>\d{{1,2}}(?:\.\d{{1,2}})?)\s?R\s?(?P<rim>\d{{2}})(?:LT|C)?{_SERVICE}{_PLIES}", re.IGNORECASE
+)
 _AIRCRAFT = re.compile(
     rf"(?P<service>[BCH])?(?P<outside>{_NUMBER})\s?[x×X]\s?(?P<width>{_NUMBER})(?:\s?(?P<build>[-R])\s?(?P<rim>{_NUMBER}))?{_PLIES}",
     re.IGNORECASE,
 )
+#: Diameter of a flat rim -> that of the 15 degree rim of the same tyre without tube, in; the width's number rises by
+#: up to one (from memory).
+TUBELESS = {"20": "22.5", "22": "24.5"}
 #: One size of each kind, for messages.
 EXAMPLES = (
     "205/60R15",
@@ -92,6 +99,12 @@ def parse_size(text: object) -> TyreSize:
         )
     if match := _AIRCRAFT.fullmatch(tidy):
         return _aircraft(tidy, match)
+    if match := _FLAT_RIM.fullmatch(tidy):
+        raise InputError(
+            f"'{text}' is a size for flat rims with 5 deg seats, which have no rules here; truck sizes are for 15 deg "
+            f"rims (diameters in half inches), such as 11R22.5 or 295/80R22.5{_tubeless(match)}",
+            field="size",
+        )
     raise InputError(f"'{text}' is no tyre size{_nearest(tidy)}", field="size")
 
 
@@ -139,6 +152,12 @@ def _aircraft(text: str, match: re.Match[str]) -> TyreSize:
             field="size",
         )
     return TyreSize(_tidy(text), kind, width * unit, None, rim, outside * unit, None, _plies(match))
+
+
+def _tubeless(match: re.Match[str]) -> str:
+    """The size for a 15 degree rim that replaces one for a flat rim, as a message says it."""
+    rim = TUBELESS.get(match["rim"])
+    return f"; {int(float(match['width'])) + 1}R{rim} replaces this one" if rim else ""
 
 
 def _tidy(text: str) -> str:

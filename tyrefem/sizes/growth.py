@@ -34,8 +34,11 @@ def stretched(line: SizedMeridian, pressure: float, stiffness: float) -> tuple[f
     return float(np.trapezoid(length, s)), mean
 
 
-def before_inflation(line: SizedMeridian, pressure: float, stiffness: float) -> SizedMeridian:
-    """The line whose cords become those of ``line`` under a pressure, Pa.
+def before_inflation(
+    line: SizedMeridian, pressure: float, stiffness: float, bend: float | None = None
+) -> SizedMeridian:
+    """The line whose cords become those of ``line`` under a pressure, Pa. ``bend``: radius of its bend at the flange,
+    m; by default that of ``line``.
 
     Raises
     ------
@@ -44,11 +47,11 @@ def before_inflation(line: SizedMeridian, pressure: float, stiffness: float) -> 
     from scipy.optimize import root_scalar
 
     length, stretch = stretched(line, pressure, stiffness)
-    lift = line.membrane.lift * (1 + stretch)
+    lift, radius = line.membrane.lift * (1 + stretch), line.bend if bend is None else bend
 
     def with_crown(crown: float) -> SizedMeridian:
         angle = float(np.arccos(np.clip(lift * crown, 0.0, 0.999)))
-        return bias_meridian(crown, line.half_width, line.rim, line.offset, line.bend, angle)[0]
+        return bias_meridian(crown, line.half_width, line.rim, line.offset, radius, angle)[0]
 
     def misses(crown: float) -> float:
         return stretched(with_crown(crown), 0.0, stiffness)[0] - length

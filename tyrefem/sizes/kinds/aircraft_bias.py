@@ -5,13 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from tyrefem.errors import InputError
-from tyrefem.sizes.aircraft import aircraft_numbers
+from tyrefem.sizes.aircraft import BEAD_MODULUS, aircraft_numbers
 from tyrefem.sizes.bead import bead_wire_area
 from tyrefem.sizes.cards import bead_shear
 from tyrefem.sizes.designation import TyreSize
 from tyrefem.sizes.drawn import Drawn, length, section_data, table, thickness
 from tyrefem.sizes.growth import before_inflation
 from tyrefem.sizes.meridian import bias_meridian
+from tyrefem.sizes.pressed_bead import bend_radius
 from tyrefem.sizes.rules import Rules
 
 BEAD_FILL = 0.7
@@ -101,17 +102,13 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
     third = carcass / 3
     offset = bead_width / 2 + third + chafer
     half = rule["section_width"].value / 2 - carcass / 2 - wall
-    bend = rule(
-        "bend_radius",
-        rim.radius + offset,
-        "mm",
-        "flange_radius and what lies outside of the carcass line at the bead: it bends about the flange's centre",
-        3e-3,
-    )
+    grows = not {"radius_growth", "width_growth"} <= rule.given.keys()
+    even = rim.radius + offset
+    inflated, _ = bias_meridian(crown, half, rim, offset, even, None if grows else angle)
+    bend = bend_radius(rule, inflated, pressure, BEAD_MODULUS)
     growth = (0.0, 0.0)
-    if not {"radius_growth", "width_growth"} <= rule.given.keys():
-        inflated, _ = bias_meridian(crown, half, rim, offset, bend, None)
-        mould = before_inflation(inflated, pressure, carcass * stiffness)
+    if grows:
+        mould = before_inflation(inflated, pressure, carcass * stiffness, bend)
         growth = inflated.crown - mould.crown, 2 * (inflated.half_width - mould.half_width)
     words = (
         "solved for: cords that the rated pressure stretches, in equilibrium before and after (tyrefem.sizes.growth)"

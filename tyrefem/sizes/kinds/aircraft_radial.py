@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import math
 
-from tyrefem.sizes.aircraft import aircraft_numbers
+from tyrefem.sizes.aircraft import BEAD_MODULUS, aircraft_numbers
 from tyrefem.sizes.bead import bead_wire_area
+from tyrefem.sizes.belt import Belt
 from tyrefem.sizes.cards import radial_cards
 from tyrefem.sizes.designation import INCH, TyreSize
 from tyrefem.sizes.drawn import Drawn
-from tyrefem.sizes.radial import Belt, Radial
+from tyrefem.sizes.radial import Radial
+from tyrefem.sizes.radial_layers import RadialLayers
+from tyrefem.sizes.radial_line import with_line
 from tyrefem.sizes.rules import Rules
 
 BEAD_FILL = 0.7
@@ -97,10 +100,9 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
         reinforced=True,
         belt_power=(6.0, f"{ESTIMATE}: many belt plies near the circumference carry an even share to near their edge"),
     )
-    radial.add_bend()
-    radial = radial.with_belt_share()
+    radial = with_line(radial, BEAD_MODULUS)
     belt = rule(
-        "inner_belts_width", 2 * radial.tread_edge, "mm", f"{ESTIMATE}, as wide as the plies under the tread", 0.02
+        "inner_belts_width", 2 * radial.tread.edge, "mm", f"{ESTIMATE}, as wide as the plies under the tread", 0.02
     )
     rule("outer_belts_width", 0.90 * belt, "mm", f"{ESTIMATE}, 0.9 of the inner belts'", 0.02)
     rule.check_all_used()
@@ -114,4 +116,4 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
     }
     bead_card = radial.bead_material("aircraft-bead", 1e-3)
     materials = radial_cards("body-plies", ply, belt_cards, "rubber-tread-aircraft", bead_card)
-    return radial.drawn(materials | radial.fabric_card())
+    return RadialLayers(radial).drawn(materials | radial.fabric_card())

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from tyrefem.sizes.bead import bead_wire_area
+from tyrefem.sizes.belt import Belt
 from tyrefem.sizes.cards import radial_cards
 from tyrefem.sizes.designation import INCH, TyreSize
 from tyrefem.sizes.drawn import Drawn
-from tyrefem.sizes.radial import Belt, Radial
+from tyrefem.sizes.radial import Radial
+from tyrefem.sizes.radial_layers import RadialLayers
+from tyrefem.sizes.radial_line import with_line
 from tyrefem.sizes.road import STANDARD, check_rim_diameter, design_width, measuring_rim, rated, road_rim
 from tyrefem.sizes.rules import Rules
 
@@ -129,8 +132,7 @@ def draw_with(
     radial = Radial(
         size, rule, rim, "body-ply", belts, (("apex", 1.0),), f"{size.text} {size.kind} radial by its size", BEAD_FILL
     )
-    radial.add_bend()
-    radial = radial.with_belt_share()
+    radial = with_line(radial)
     rule.check_all_used()
     count = round(radial.n("plies"))
     ply = {
@@ -140,4 +142,4 @@ def draw_with(
     cards = ("passenger-belt", "passenger-belt", "passenger-cap-ply")
     belt_cards = {belt.region: radial.belt_card(belt, card) for belt, card in zip(belts, cards, strict=True)}
     bead_card = radial.bead_material("passenger-bead", 1e-3)
-    return radial.drawn(radial_cards("body-ply", ply, belt_cards, "rubber-tread-passenger", bead_card))
+    return RadialLayers(radial).drawn(radial_cards("body-ply", ply, belt_cards, "rubber-tread-passenger", bead_card))

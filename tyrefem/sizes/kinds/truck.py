@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from tyrefem.sizes.bead import bead_wire_area
+from tyrefem.sizes.belt import Belt
 from tyrefem.sizes.cards import radial_cards
 from tyrefem.sizes.designation import INCH, TyreSize
 from tyrefem.sizes.drawn import Drawn
-from tyrefem.sizes.radial import Belt, Radial
+from tyrefem.sizes.radial import Radial
+from tyrefem.sizes.radial_layers import RadialLayers
+from tyrefem.sizes.radial_line import with_line
 from tyrefem.sizes.road import check_rim_diameter, design_width, measuring_rim, rated, road_rim
 from tyrefem.sizes.rules import Rules
 
@@ -15,6 +18,10 @@ STANDARD = "ETRTO/ISO 4209-1 (from memory)"
 ESTIMATE = "estimate: ordinary practice"
 #: Up to this series belts and tread are wider for the nominal width (low tyres and wide-base singles).
 LOW_SERIES = 0.6
+#: From this nominal width on, m, a truck tyre is a wide-base single.
+WIDE_BASE = 0.4
+#: Modulus of their bead between plies and flange in plane strain, Pa, and its source.
+BEAD_MODULUS = (56e6, "estimate: four times 14 MPa of shear, that of fillers")
 
 
 def draw(size: TyreSize, rule: Rules) -> Drawn:
@@ -38,7 +45,8 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
     )
     design_width(size, rule, rim_width, 0.75)
     pressure = rated(size, rule, 61.0, 850e3, f"850 kPa ({STANDARD}); mean of three sizes, 4 % either way")
-    low = (size.series or 1.0) <= LOW_SERIES + 1e-9
+    wide_base = width >= WIDE_BASE
+    low = wide_base or (size.series or 1.0) <= LOW_SERIES + 1e-9
     tread_share, tread_words = 0.79, "mean of five highway ribs, 0.74 to 0.82"
     if low:
         tread_share, tread_words = 0.86, "low tyres and wide-base singles, 0.83 to 0.88"
@@ -119,8 +127,7 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
         reinforced=True,
         belt_power=(None, "solved for: within 2 to 5, the power with which the crown is as flat as 2.4 nominal widths"),
     )
-    radial.add_bend()
-    radial = radial.with_belt_share()
+    radial = with_line(radial, BEAD_MODULUS if wide_base else None)
     rule.check_all_used()
     ply = {
         "base": "truck-body-ply",
@@ -130,4 +137,4 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
     belt_cards = {belt.region: radial.belt_card(belt, card) for belt, card in zip(belts, cards, strict=True)}
     bead_card = radial.bead_material("truck-bead", 1.6e-3)
     materials = radial_cards("body-ply", ply, belt_cards, "rubber-tread-truck", bead_card)
-    return radial.drawn(materials | radial.fabric_card() | {"apex-soft": "rubber-apex-soft"})
+    return RadialLayers(radial).drawn(materials | radial.fabric_card() | {"apex-soft": "rubber-apex-soft"})
