@@ -98,8 +98,8 @@ def test_the_points_of_a_file_give_the_line_again(size: str) -> None:
 
 
 def test_plies_hang_over_the_flange_of_a_narrow_rim() -> None:
-    """C40x14-21: a rim of half the width. The plies leave it axially; inflated, bent evenly about the flange, beyond that
-    direction; both still in equilibrium."""
+    """C40x14-21: a rim of half the width. The plies leave it axially; bent evenly about the flange, beyond that
+    direction. Both lines are in equilibrium."""
     drawn = draw_size("C40x14-21 24PR")
     assert drawn.rules["rim_width"].value < 0.55 * drawn.rules["section_width"].value
     even = draw_size("C40x14-21 24PR", {"bead_pressed": "0 mm"})
