@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from tyrefem.errors import InputError
+from tyrefem.mechanics.footprint.compliance import TreadCompliance
 from tyrefem.mechanics.footprint.contact import Pressing
 from tyrefem.mechanics.footprint.example_tyre import PlainTyre
 from tyrefem.mechanics.footprint.loss import RevolutionLoss
@@ -18,6 +19,7 @@ from tyrefem.mechanics.footprint.strain_harmonics import StrainHarmonics
 from tyrefem.mechanics.rolling.free_rolling import LossyTyre, rolling_resistance
 from tyrefem.mechanics.rolling.lagging_strains import LaggingFootprint, LaggingStrains
 from tyrefem.mechanics.rolling.lossy_harmonics import LossyHarmonics
+from tyrefem.mechanics.rolling.tread_influence import TreadInfluence
 from tyrefem.mechanics.solid.body import Prestressed
 from tyrefem.mechanics.solid.spin import rolled
 
@@ -133,3 +135,20 @@ def test_the_other_way_round() -> None:
     first, second = (turning.at_deflection(DEFLECTION, 36) for turning in (forwards, backwards))
     assert second.offset == pytest.approx(-first.offset, rel=1e-9)
     assert second.load == pytest.approx(first.load, rel=1e-9)
+
+
+def test_half_and_full_section_agree_under_any_force() -> None:
+    """Points of the whole tread: symmetric and antisymmetric motions both lose."""
+    half, full = (
+        TreadInfluence(TreadCompliance(rolling(0.3, half=half, spin=40.0).harmonics)).kernel(8, 3)
+        for half in (True, False)
+    )
+    assert half == pytest.approx(full, abs=1e-6 * np.abs(full).max())
+    lossless = TreadInfluence(TreadCompliance(rolling(0.0, spin=40.0).harmonics)).kernel(8, 3)
+    # Loss tells a point in front from a point behind; also for forces along the axis.
+    for component in range(3):
+        ahead, behind = half[1, component, :, component], half[3, component, :, component]
+        assert np.abs(ahead - behind).max() > 1e-3 * np.abs(ahead).max()
+        assert lossless[1, component, :, component] == pytest.approx(
+            lossless[3, component, :, component], abs=1e-9 * np.abs(ahead).max()
+        )

@@ -101,6 +101,8 @@ def test_beyond_a_critical_speed_it_warns_and_beyond_all_it_refuses() -> None:
     with pytest.warns(ResultWarning, match="70 m/s are beyond the critical speed of waves that only loss limits"):
         limited = press(study(mechanics__rolling=True, drive__speed="70 m/s"), deflection=0.02)
     assert limited.turning is not None
+    with pytest.warns(ResultWarning, match="180 harmonics: the rolling contact has no unique solution"):
+        assert "no resistance by offset" in limited.turning.words
     with (
         pytest.warns(ResultWarning, match="beyond the critical speed"),
         pytest.raises(InputError, match="130 m/s are beyond a critical speed of the tyre"),

@@ -107,10 +107,3 @@ class LossyHarmonics(Harmonics):
         self.negative_pivots[n] = int((upper.diagonal().real < 0).sum())
         condensed = (factor.L[-k:, -k:] @ upper[-k:, -k:]).toarray()
         return np.linalg.inv((condensed + condensed.T) / 2)
-
-    def _last(self, dofs: Indices) -> Indices:
-        """The order of the elastic stiffness, which has the same sparsity."""
-        key = dofs.tobytes()
-        if key not in self._orders:
-            self._orders[key] = Harmonics(self.state)._last(dofs)
-        return self._orders[key]

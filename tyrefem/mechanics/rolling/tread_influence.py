@@ -14,6 +14,7 @@ from tyrefem.cache import Cache
 from tyrefem.mechanics.footprint.compliance import TreadCompliance, interpolation, solved_harmonics
 from tyrefem.mechanics.footprint.elements import COMPONENTS, SectionElements
 from tyrefem.mechanics.footprint.harmonics import Harmonics
+from tyrefem.mechanics.rolling.lossy_harmonics import LossyHarmonics
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -57,6 +58,11 @@ class AntisymmetricHarmonics(Harmonics):
 
 
 @dataclass(frozen=True, eq=False)
+class LossyAntisymmetricHarmonics(AntisymmetricHarmonics, LossyHarmonics):
+    """Antisymmetric motions with loss."""
+
+
+@dataclass(frozen=True, eq=False)
 class TreadInfluence(Brief):
     """Displacements (r, z, t) of the m points of the whole tread under unit forces on them.
 
@@ -77,6 +83,9 @@ class TreadInfluence(Brief):
     def antisymmetric(self) -> AntisymmetricHarmonics:
         """The antisymmetric motions of a half section."""
         symmetric = self.tread.harmonics
+        if isinstance(symmetric, LossyHarmonics):
+            loss = (symmetric.angular_speed, symmetric.tangents, symmetric.dissipating)
+            return LossyAntisymmetricHarmonics(symmetric.state, *loss, mirrored=symmetric)
         return AntisymmetricHarmonics(symmetric.state, mirrored=symmetric)
 
     @functools.cached_property

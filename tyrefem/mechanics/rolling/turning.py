@@ -67,11 +67,18 @@ class Turning(Brief):
 
     @functools.cached_property
     def resistance(self) -> FreeRollingResistance | None:
-        """Rolling resistance by offset and by loss; None in large motion."""
+        """Rolling resistance by offset and by loss; None in large motion, and, with a warning, beyond the critical speed
+        of the tread's short waves."""
         if self.lossy is None:
             return None
         harmonics = max(RESISTANCE_HARMONICS, self.footprint.harmonics)
-        return rolling_resistance(self.lossy, harmonics, cast("LaggingFootprint", self.footprint).lagging.deflection)
+        try:
+            return rolling_resistance(
+                self.lossy, harmonics, cast("LaggingFootprint", self.footprint).lagging.deflection
+            )
+        except InputError as error:
+            _warn_of(self.speed, f"{harmonics} harmonics: {error.message}")
+            return None
 
     @property
     def centrifugal_growth(self) -> float:
@@ -95,6 +102,8 @@ class Turning(Brief):
         """One line: growth, offset, resistance both ways."""
         spin = f"{self.tyre.angular_speed:.4g} rad/s: radius {1e3 * self.centrifugal_growth:+.2f} mm by spin"
         resistance = self.resistance
+        if resistance is None and self.lossy is not None:
+            return f"{spin}; beyond the critical speed of the tread's short waves: no resistance by offset"
         if resistance is None:
             return f"{spin}; pressure without offset in large motion"
         doubt = f" (in doubt: {resistance.balance:+.0%})" if abs(resistance.balance) > DOUBTFUL else ""
