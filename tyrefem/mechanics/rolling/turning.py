@@ -67,15 +67,16 @@ class Turning(Brief):
 
     @functools.cached_property
     def resistance(self) -> FreeRollingResistance | None:
-        """Rolling resistance by offset and by loss; None in large motion, and, with a warning, beyond the critical speed
-        of the tread's short waves."""
+        """Rolling resistance by offset and by loss; None in large motion.
+
+        Also None, with a warning, beyond the critical speed of the tread's short waves.
+        """
         if self.lossy is None:
             return None
         harmonics = max(RESISTANCE_HARMONICS, self.footprint.harmonics)
+        deflection = cast("LaggingFootprint", self.footprint).lagging.deflection
         try:
-            return rolling_resistance(
-                self.lossy, harmonics, cast("LaggingFootprint", self.footprint).lagging.deflection
-            )
+            return rolling_resistance(self.lossy, harmonics, deflection)
         except InputError as error:
             _warn_of(self.speed, f"{harmonics} harmonics: {error.message}")
             return None
