@@ -53,6 +53,18 @@ def test_a_curve(here: Path, capfd: pytest.CaptureFixture[str]) -> None:
     assert (here / "out" / "curve.png").read_bytes().startswith(b"\x89PNG")
 
 
+def test_friction_on_the_footprint_in_large_motion(here: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    line = ["roll", STUDY, "--slip-angle", "2 deg", "--load", "6 kN", "--no-pictures", "--no-vtk", "--json", *COARSE]
+    assert main([*line, "--out", "linear"]) == 0
+    linear = json.loads(capfd.readouterr().out)
+    assert main([*line, "--motion", "large", "--out", "large"]) == 0
+    large = json.loads(capfd.readouterr().out)
+    assert (linear["motion"], large["motion"]) == ("linear", "large")
+    assert large["F_z_N"] == pytest.approx(6000.0, rel=1e-6)
+    assert large["deflection_m"] > 1.03 * linear["deflection_m"]
+    assert large["F_y_N"] < 0 < large["M_z_Nm"]
+
+
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
@@ -63,6 +75,7 @@ def test_a_curve(here: Path, capfd: pytest.CaptureFixture[str]) -> None:
         (["--slip", "1 %", "--torque", "10 N m"], "give at most one of slip, torque and axle force"),
         (["--friction", "-0.5"], "--friction: must be at least 0"),
         (["--turn-slip", "5 1/m"], "--turn-slip: a path with a radius of 0.2 m is too tight"),
+        (["--motion", "huge"], "--motion: no motion 'huge'"),
         (["--axle-force", "100 kN"], "--axle-force: friction 1 under"),
     ],
 )

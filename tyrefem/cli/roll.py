@@ -60,7 +60,9 @@ def roll(
     ] = None,
     camber: Annotated[str, typer.Option(help="Camber '1 deg'; positive: the wheel leans to its left.")] = "0 deg",
     turn_slip: Annotated[str, typer.Option(help="Curvature of the path, '0.02 1/m'; positive: left.")] = "0 1/m",
-    friction: Annotated[str, typer.Option(help="Coefficient of friction.")] = "1.0",
+    friction: Annotated[
+        str | None, typer.Option(help="Coefficient of friction; default: the tread card's [friction], else 1.")
+    ] = None,
     speed: Annotated[str | None, typer.Option(help="Speed; default: the drive's.")] = None,
     pressure: Annotated[str | None, typer.Option(help="Gauge pressure, e.g. '2.2 bar'.")] = None,
     load: Annotated[str | None, typer.Option(help="Load of the tyre, e.g. '4 kN'.")] = None,
@@ -68,6 +70,13 @@ def roll(
     drum: Annotated[
         str | None, typer.Option(metavar="DIAMETER", help="Drum's diameter, e.g. '1.7 m', or 'flat'.")
     ] = None,
+    motion: Annotated[
+        str,
+        typer.Option(
+            metavar="large|linear",
+            help="Linear about the inflated tyre, or friction on the footprint in large motion (slower).",
+        ),
+    ] = "linear",
     pictures: Annotated[bool, typer.Option(help="Draw the PNG pictures.")] = True,
     vtk: Annotated[bool, typer.Option(help="Write the footprint as contact.vtu.")] = True,
     out: Annotated[Path | None, typer.Option("--out", help="Folder; default: results/STUDY-roll.")] = None,
@@ -89,6 +98,7 @@ def roll(
         "speed": speed, "pressure": pressure, "load": load, "deflection": deflection, "drum_diameter": drum,
     }  # fmt: skip
     given: dict[str, Any] = {name: _read(name, text) for name, text in texts.items() if text is not None}
+    given["motion"] = motion
     for name, text in {"slip_angle": slip_angle, "slip": slip}.items():
         if text is not None:
             given[name] = _values(name, text)
@@ -151,6 +161,8 @@ def _values(name: str, text: str) -> float | list[float]:
 def _placed(error: InputError, given: dict[str, Any]) -> InputError:
     """The error with its option as field."""
     options = {**OPTIONS, **VARIED}
+    if error.file is None and error.field == "motion":
+        return InputError(error.message, field="--motion")
     if error.file is None and error.field in options and (error.field in given or error.field in VARIED):
         return InputError(error.message, field=options[error.field][0])
     return error
@@ -176,13 +188,16 @@ def _words(rolled: RolledStudy) -> str:
         f"  friction             {state.friction_power:.5g} W; {100 * state.sliding_share:.3g} % of the load on points "
         "that slip",
         f"  harmonics            {state.harmonics}, error of the force {rolled.error:.2%}",
-        f"  {MOTION_WORDS}",
+        f"  {MOTION_WORDS[rolled.wheel.pressed.footprint.motion]}",
     ]
     return "\n".join(lines)
 
 
 #: What the rolling of this command is.
-MOTION_WORDS = "motion               linear about the inflated tyre, without loss: too stiff under large deflections"
+MOTION_WORDS = {
+    "linear": "motion               linear about the inflated tyre, without loss: too stiff under large deflections",
+    "large": "motion               footprint in large motion, friction on it in small motion, without loss",
+}
 
 
 def _curve_words(curve: SlipCurve) -> str:
@@ -195,7 +210,7 @@ def _curve_words(curve: SlipCurve) -> str:
         f"  slip stiffness       {stiffness.slip / 1e3:.2f} kN",
         f"  greatest force       {peak['force_N']:.0f} N at {where}",
         f"  harmonics            {curve.states[0].harmonics}, error of the force {curve.error:.2%}",
-        f"  {MOTION_WORDS}",
+        f"  {MOTION_WORDS[curve.wheel.pressed.footprint.motion]}",
         f"  {'angle, deg':>10} {'slip, %':>9} {'F_x, N':>9} {'F_y, N':>9} {'M_z, N m':>9} {'friction, W':>11}",
     ]
     lines += [

@@ -14,6 +14,7 @@ from tyrefem.brief import Brief
 from tyrefem.errors import InputError
 from tyrefem.mechanics.footprint.contact import LADDER
 from tyrefem.mechanics.footprint.press import Pressed, press
+from tyrefem.mechanics.rolling.pressed_shape import PressedShape
 from tyrefem.mechanics.rolling.rolled import RolledTyre
 from tyrefem.mechanics.rolling.rolling_motion import RollingMotion
 from tyrefem.mechanics.rolling.steady_rolling import FrictionLaw, RollingLoads, SteadyRolling
@@ -43,7 +44,7 @@ class WheelOnRoad(Brief):
 
     Parameters
     ----------
-    pressed : the tyre without friction and camber, in motion linear about the inflated tyre.
+    pressed : the tyre without friction and camber.
     rolling : tyre and road with camber and friction.
     load, deflection : given; the other is None. speed : m/s.
     """
@@ -139,7 +140,7 @@ class RolledStudy(Brief):
             "power_balance": self.state.balance,
             "harmonics": self.state.harmonics,
             "error": self.error,
-            "motion": "linear",
+            "motion": pressed.footprint.motion,
             "versions": versions(),
         }
 
@@ -167,16 +168,31 @@ def row(wheel: WheelOnRoad, state: RolledTyre) -> dict[str, float]:
     }
 
 
+def tread_friction(pressed: Pressed) -> float | FrictionLaw:
+    """Friction of the card of the region that meets the road, at the drive's initial temperature; else `FRICTION`."""
+    state, study = pressed.tyre.state, pressed.study
+    on_road = state.mesh.f2t[0, np.asarray(state.mesh.boundaries[state.tread])]
+    shares = {name: int(np.isin(on_road, members).sum()) for name, members in state.mesh.subdomains.items()}
+    law = study.materials[max(shares, key=lambda name: shares[name])].friction
+    if law is None:
+        return FRICTION
+    if law.law == "constant" and not law.pressure_exponent:
+        return law.coefficient
+    temperature = float(study.card.drive.initial)
+    return lambda speed, pressure: law(speed, pressure, temperature)
+
+
 def wheel_on_road(
     study: StudyData,
     *,
     camber: float = 0.0,
-    friction: float | FrictionLaw = FRICTION,
+    friction: float | FrictionLaw | None = None,
     speed: float | None = None,
     pressure: float | None = None,
     load: float | None = None,
     deflection: float | None = None,
     drum_diameter: float | None = None,
+    motion: str = "linear",
 ) -> WheelOnRoad:
     """Inflate and press a study's tyre; defaults are values at the start of the drive's first phase.
 
@@ -188,13 +204,15 @@ def wheel_on_road(
     if speed is not None and not speed > 0:
         raise InputError(f"must be more than 0 m/s, not {speed:g} m/s", field="speed")
     pressed = press(
-        study, pressure=pressure, load=load, deflection=deflection, drum_diameter=drum_diameter, motion="linear"
+        study, pressure=pressure, load=load, deflection=deflection, drum_diameter=drum_diameter, motion=motion
     )
     phase = study.card.drive.phases[0]
     if load is None and deflection is None:
         load = None if phase.load is None else phase.load.start
     deflection = pressed.footprint.deflection if load is None else None
-    rolling = SteadyRolling(pressed.pressing, camber, friction)
+    shape = PressedShape(pressed.footprint) if pressed.balanced else None
+    law = tread_friction(pressed) if friction is None else friction
+    rolling = SteadyRolling(pressed.pressing, camber, law, shape=shape)
     return WheelOnRoad(pressed, rolling, load, deflection, speed or pressed.speed or 1.0)
 
 
@@ -209,7 +227,7 @@ def roll(
     tolerance: float = TOLERANCE,
     **wheel: Any,
 ) -> RolledStudy:
-    """Roll a study's tyre steadily over the road with Coulomb friction, in motion linear about the inflated tyre.
+    """Roll a study's tyre steadily over the road with Coulomb friction.
 
     Parameters
     ----------
@@ -218,7 +236,9 @@ def roll(
         force of the road on the tyre forward, N. Without them the wheel rolls freely: no torque.
     tolerance : allowed change of the horizontal force with the number of harmonics.
     wheel : ``camber``, rad (positive: the wheel leans to its left), ``friction``: coefficient, or function of sliding
-        speed (m/s) and pressure (Pa); ``speed``, m/s; ``pressure``, ``load`` or ``deflection``, ``drum_diameter`` as
+        speed (m/s) and pressure (Pa), by default that of the tread's card; ``motion``: ``"linear"`` about the inflated
+        tyre, or ``"large"``: friction moves the tyre from its footprint in large motion (`PressedShape`);
+        ``speed``, m/s; ``pressure``, ``load`` or ``deflection``, ``drum_diameter`` as
         in `press`.
 
     Raises

@@ -119,7 +119,7 @@ class SlipCurve(Brief):
             "points": [row(self.wheel, state) for state in self.states],
             "harmonics": self.states[0].harmonics,
             "error": self.error,
-            "motion": "linear",
+            "motion": self.wheel.pressed.footprint.motion,
             "versions": versions(),
         }
 
