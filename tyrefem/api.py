@@ -18,6 +18,7 @@ from tyrefem.heating_test import identification
 from tyrefem.inputs import study as studies
 from tyrefem.mechanics.footprint import natural_frequencies as vibrations
 from tyrefem.mechanics.footprint import press as presses
+from tyrefem.mechanics.rolling import force_table as force_tables
 from tyrefem.mechanics.rolling import press as rolling_press
 from tyrefem.mechanics.rolling import roll as rolls
 from tyrefem.mechanics.rolling import slip_curve as slip_curves
@@ -316,6 +317,22 @@ class ForcesOverSlip(slip_curves.SlipCurve):
         return Path(folder)
 
 
+class ForceTable(force_tables.TyreForces):
+    """Forces of a study's tyre over load, slip, slip angle and camber, with `save`."""
+
+    def save(self, folder: str | Path, *, pictures: bool = True) -> Path:
+        """Write ``forces.csv``, ``forces.json``, ``tyre.tir``, and with pictures ``forces.png``; return the folder.
+
+        Raises
+        ------
+        InputError : the folder cannot be written.
+        """
+        from tyrefem.reports.forces import write_files
+
+        write_files(self, Path(folder), pictures=pictures)
+        return Path(folder)
+
+
 class Study(studies.StudyData):
     """A study, with methods to run, compare, diagnose and sweep it. `study` makes it; `replace` changes it.
 
@@ -411,6 +428,14 @@ class Study(studies.StudyData):
         Options as in `roll`; see `tyrefem.mechanics.rolling.slip_curve.slip_curve`.
         """
         return with_verbs(ForcesOverSlip, slip_curves.slip_curve(self, **options))
+
+    def tyre_forces(self, **options: Any) -> ForceTable:
+        """Forces at every one of ``loads``, over ``slips``, ``slip_angles`` and ``cambers``, with a Magic Formula.
+
+        ``fit`` of the answer has the coefficients; `ForceTable.save` writes them as a ``.tir`` file. See
+        `tyrefem.mechanics.rolling.force_table.tyre_forces`.
+        """
+        return with_verbs(ForceTable, force_tables.tyre_forces(self, **options))
 
     def natural_frequencies(
         self, harmonics: Iterable[int] = vibrations.HARMONICS, count: int = vibrations.COUNT, **options: Any

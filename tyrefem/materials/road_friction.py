@@ -78,7 +78,7 @@ class RoadFriction(Sourced):
 
     def __call__(self, speed: Array | float, pressure: Array | float, temperature: Array | float) -> Array:
         """mu at sliding speeds, m/s, contact pressures, Pa, and temperatures of the tread, degC."""
-        pressure = np.maximum(np.asarray(pressure, dtype=float), 1e-3 * self.pressure)
+        pressure = np.maximum(np.asarray(pressure, dtype=float), 0.1 * self.pressure)
         falling = (self.pressure / pressure) ** self.pressure_exponent
         speed = np.asarray(speed, dtype=float)
         if self.law == "constant":

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,6 +14,7 @@ from tyrefem.errors import InputError
 from tyrefem.mechanics.footprint.complementarity import contact_forces
 from tyrefem.mechanics.footprint.contact import Pressing
 from tyrefem.mechanics.footprint.road import Road
+from tyrefem.mechanics.rolling.coefficient_search import CoefficientSearch, FrictionLaw
 from tyrefem.mechanics.rolling.contact_body import ContactBody
 from tyrefem.mechanics.rolling.friction import Control, RollingContact
 from tyrefem.mechanics.rolling.pressed_shape import PressedShape
@@ -24,12 +24,12 @@ from tyrefem.mechanics.rolling.rolling_motion import RollingMotion
 from tyrefem.mechanics.rolling.tread_influence import TreadInfluence
 
 Array = NDArray[np.float64]
-#: mu of sliding speed (m/s) and contact pressure (Pa), arrays alike.
-FrictionLaw = Callable[[Array, Array], Array]
 #: Relative change of the forces at which geometry and friction have settled; rounds before giving up.
 SETTLED, ROUNDS = 1e-7, 60
 #: Change of the share of the first step in contact at which it has settled; rounds before it is left as it is.
 FRONT_SETTLED, FRONT_ROUNDS = 0.05, 3
+#: With a law of friction, where a few points may stick and slip in turn: change of all forces together.
+SETTLED_LAW = 1e-4
 
 
 @dataclass(frozen=True)
@@ -123,10 +123,10 @@ class SteadyRolling(Brief):
         )
         self.pressing.check(guess[0])
         grid = self._near(harmonics, guess[0]) if start is None else start.grid
-        last, before = start, None
+        last, before, search = start, None, CoefficientSearch(self.friction)
         front = None if start is None else start.before
         for number in range(ROUNDS):
-            rolled = self._solved(grid, motion, given, guess, last, front)
+            rolled = self._solved(grid, motion, given, guess, last, search.of(grid, last), front)
             wider = grid.around(rolled.contact.forces[:, 0] > 0, 1)
             guess, last = (rolled.deflection, rolled.travel), rolled
             if wider is not grid:
@@ -134,11 +134,12 @@ class SteadyRolling(Brief):
                 last = None
                 continue
             forces = rolled.contact.forces
-            change = math.inf if before is None else float(np.abs(forces - before).max())
+            size, settled = (np.sum, SETTLED_LAW) if callable(self.friction) else (np.max, SETTLED)
+            change = math.inf if before is None else float(size(np.abs(forces - before)))
             fronted = self._fronted(rolled, front) or number >= FRONT_ROUNDS
             # A front that goes to and fro between two steps is left where it is.
             front = front if fronted else rolled.before
-            if fronted and (self._closed(motion) or change <= SETTLED * float(np.abs(forces).max())):
+            if fronted and (self._closed(motion) or change <= settled * float(size(np.abs(forces)))):
                 self.pressing.check(rolled.deflection)
                 return rolled
             before = forces
@@ -173,9 +174,11 @@ class SteadyRolling(Brief):
         given: RollingLoads,
         guess: tuple[float, float],
         last: RolledTyre | None,
+        friction: Array,
         front: Array | None,
     ) -> RolledTyre:
-        """Contact with geometry and friction of the ``last`` solution; ``front``: `RolledTyre.before`."""
+        """Contact with the geometry of the ``last`` solution and coefficients of ``friction`` (k,); ``front``:
+        `RolledTyre.before`."""
         moved = np.zeros((grid.n_points, 3)) if last is None else last.moved
         gaps, normals = grid.gaps(moved, self.reach - (given.deflection or 0.0))
         axes = grid.road_axes(normals)
@@ -189,7 +192,6 @@ class SteadyRolling(Brief):
         per_radian[~body.may_touch] = 0.0
         if given.travel is not None:
             rigid = rigid + given.travel * per_radian
-        friction = np.full(grid.n_points, self.friction) if not callable(self.friction) else self._law(grid, last)
         controls, values = [], []
         none, flat = np.zeros(grid.n_points), np.zeros((grid.n_points, 2))
         if given.load is not None:
@@ -212,11 +214,3 @@ class SteadyRolling(Brief):
         assert deflection is not None
         assert travel is not None
         return RolledTyre(grid, motion, axes, contact, friction, deflection, travel, self.reach)
-
-    def _law(self, grid: RollingGrid, last: RolledTyre | None) -> Array:
-        """(k,) coefficient of friction at the sliding speed and pressure of the last solution."""
-        assert callable(self.friction)
-        if last is None:
-            zero = np.zeros(grid.n_points)
-            return np.asarray(self.friction(zero, zero), dtype=float)
-        return np.asarray(self.friction(last.sliding_speed.ravel(), last.pressure.ravel()), dtype=float)

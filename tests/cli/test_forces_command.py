@@ -1,0 +1,76 @@
+"""`tyrefem forces`: files that agree with each other, a `.tir` file that gives the forces back, refusals in one line."""
+
+from __future__ import annotations
+
+import csv
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from tyrefem.cli import main
+from tyrefem.tyre_forces.property_file import read_tir
+
+STUDY = "nasa-22x5.5-8pr"
+FEW = [
+    "--loads",
+    "8 kN, 12 kN",
+    "--slip-angles",
+    "0 deg, 1 deg, 4 deg, 8 deg",
+    "--slips",
+    "-20 %, -5 %, -2 %, 2 %, 5 %, 20 %",
+]
+COARSE = ["--set", "mesh.size=14 mm"]
+
+
+def test_files_agree(here: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    line = ["forces", STUDY, *FEW, "--cambers", "none", "--friction", "0.8", "--out", "out", *COARSE]
+    assert main([*line, "--json"]) == 0
+    numbers = json.loads(capfd.readouterr().out)
+    folder = here / "out"
+    assert numbers == json.loads((folder / "forces.json").read_text(encoding="utf-8"))
+    with (folder / "forces.csv").open(encoding="utf-8") as lines:
+        rows = [{name: float(value) for name, value in row.items()} for row in csv.DictReader(lines)]
+    # Four angles and six slips at both loads.
+    assert len(rows) == len(numbers["points"]) == 20
+    formula = read_tir(folder / "tyre.tir")
+    largest = max(abs(row["F_y_N"]) for row in rows)
+    for row in rows:
+        if row["free"]:
+            fitted = formula.lateral_force(row["F_z_N"], row["slip_angle_rad"])
+            assert fitted == pytest.approx(row["F_y_N"], abs=0.05 * largest)
+        else:
+            fitted = formula.longitudinal_force(row["F_z_N"], row["slip"])
+            assert fitted == pytest.approx(row["F_x_N"], abs=0.05 * largest)
+    assert max(numbers["magic_formula"]["rms_over_largest"].values()) < 0.05
+    assert (folder / "forces.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_camber_leans_the_forces(here: Path) -> None:
+    line = ["forces", STUDY, *FEW[:2], "--slip-angles", "0 deg, 1 deg, 2 deg, 5 deg, 9 deg", "--slips", "none"]
+    assert main([*line, "--cambers", "4 deg", "--no-pictures", "--out", "out", *COARSE]) == 0
+    with (here / "out" / "forces.csv").open(encoding="utf-8") as lines:
+        rows = [{name: float(value) for name, value in row.items()} for row in csv.DictReader(lines)]
+    leaning = [row for row in rows if row["camber_rad"]]
+    thrust = next(row for row in leaning if abs(row["slip_angle_rad"]) < 1e-9)
+    # The wheel leans to its left, and is pushed there.
+    assert thrust["F_y_N"] > 0
+    assert {row["slip_angle_rad"] > 0 for row in leaning} == {True, False}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--loads", "8 kN"], "--loads: give at least two loads"),
+        (["--loads", "8 kN, -1 kN"], "--loads: must be more than 0 N"),
+        (["--slip-angles", "1 deg, 2"], "--slip-angles: '2' has no unit"),
+        (["--slip-angles", "60 deg"], "--slip-angles: a slip angle of 60 deg is impossible"),
+        (["--slips", "-100 %"], "--slips: a slip of -1 is impossible"),
+        (["--friction", "-0.5"], "--friction: must be at least 0"),
+        (["--motion", "huge"], "--motion: no motion 'huge'"),
+    ],
+)
+def test_bad_input_is_one_line(refused: Callable[..., str], arguments: list[str], words: str) -> None:
+    given = [] if "--loads" in arguments else ["--loads", "8 kN, 12 kN"]
+    assert words in refused("forces", STUDY, *given, *arguments, *COARSE)

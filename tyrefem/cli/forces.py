@@ -1,0 +1,158 @@
+"""`tyrefem forces`: forces of a study's tyre over load, slip, slip angle and camber, and a `.tir` file."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from tyrefem.cli.common import (
+    CaseOption,
+    ForceOption,
+    JsonOption,
+    QuietOption,
+    SetOption,
+    StudyArgument,
+    print_json,
+    settings,
+    warn,
+)
+from tyrefem.cli.progress import stages
+from tyrefem.errors import InputError
+from tyrefem.output.folder import results_folder
+
+if TYPE_CHECKING:
+    from tyrefem.mechanics.rolling.force_table import TyreForces
+
+#: Options with several quantities, and with one: name and unit.
+LISTS = {
+    "loads": ("--loads", "N"),
+    "slip_angles": ("--slip-angles", "rad"),
+    "slips": ("--slips", "1"),
+    "cambers": ("--cambers", "rad"),
+}
+SINGLE = {
+    "friction": ("--friction", "1"),
+    "speed": ("--speed", "m/s"),
+    "pressure": ("--pressure", "Pa"),
+    "drum_diameter": ("--drum", "m"),
+}
+
+
+def forces(
+    study: StudyArgument,
+    loads: Annotated[str | None, typer.Option(help="Loads '2 kN, 4 kN'; default 0.5 to 1.25 of the drive's.")] = None,
+    slip_angles: Annotated[
+        str | None, typer.Option(help="Slip angles '0 deg, 1 deg, 3 deg'; default 0 to 12 deg; the sign is no matter.")
+    ] = None,
+    slips: Annotated[str | None, typer.Option(help="Slips '-5 %, 5 %'; default -30 to 30 %; positive drives.")] = None,
+    cambers: Annotated[str | None, typer.Option(help="Cambers beside 0, '3 deg'; default 3 deg; 'none'.")] = None,
+    friction: Annotated[
+        str | None, typer.Option(help="Coefficient of friction; default: the tread card's [friction], else 1.")
+    ] = None,
+    speed: Annotated[str | None, typer.Option(help="Speed; default: the drive's.")] = None,
+    pressure: Annotated[str | None, typer.Option(help="Gauge pressure, e.g. '2.2 bar'.")] = None,
+    drum: Annotated[
+        str | None, typer.Option(metavar="DIAMETER", help="Drum's diameter, e.g. '1.7 m', or 'flat'.")
+    ] = None,
+    motion: Annotated[
+        str,
+        typer.Option(
+            metavar="large|linear",
+            help="Linear about the inflated tyre, or friction on the footprint in large motion (slower).",
+        ),
+    ] = "linear",
+    pictures: Annotated[bool, typer.Option(help="Draw the PNG picture.")] = True,
+    out: Annotated[Path | None, typer.Option("--out", help="Folder; default: results/STUDY-forces.")] = None,
+    force: ForceOption = False,
+    quiet: QuietOption = False,
+    as_json: JsonOption = False,
+    changes: SetOption = None,
+    case: CaseOption = None,
+) -> None:
+    """Forces over load, slip, slip angle and camber; a Magic Formula that fits them, as a .tir file."""
+    from tyrefem.api import study as load_study
+    from tyrefem.mechanics.rolling.force_table import tyre_forces
+    from tyrefem.mechanics.rolling.roll import NEEDS
+    from tyrefem.reports.forces import FILES, summary, write_files
+
+    lists = {"loads": loads, "slip_angles": slip_angles, "slips": slips, "cambers": cambers}
+    given: dict[str, Any] = {"motion": motion}
+    given |= {name: _listed(name, text) for name, text in lists.items() if text is not None}
+    single = {"friction": friction, "speed": speed, "pressure": pressure, "drum_diameter": drum}
+    given |= {name: _read(*SINGLE[name], text) for name, text in single.items() if text is not None}
+    loaded = load_study(study, settings(changes), case)
+    NEEDS.check(loaded)
+    warn(loaded.warnings)
+    with (
+        results_folder(out or Path("results") / f"{loaded.name}-forces", "forces", FILES, force=force) as folder,
+        stages(quiet=quiet or as_json) as tick,
+    ):
+        tick(f"{loaded.name}: inflated and pressed", 0.0, 0.0)
+        try:
+            result = tyre_forces(
+                loaded, progress=lambda done, total: tick(f"{loaded.name}: rolling", done, total), **given
+            )
+            write_files(result, folder, pictures=pictures)
+        except InputError as error:
+            raise _placed(error) from None
+    if as_json:
+        print_json(summary(result))
+        return
+    typer.echo(_words(result))
+    typer.echo(f"results in {folder}")
+
+
+def _read(option: str, unit: str, text: str) -> float:
+    from tyrefem.quantity import Unit
+
+    if option == "--drum" and text.strip() == "flat":
+        return math.inf
+    try:
+        return Unit(unit)(text.strip())
+    except InputError as error:
+        raise error.within(field=option) from None
+
+
+def _listed(name: str, text: str) -> list[float]:
+    if text.strip() == "none":
+        return []
+    return [_read(*LISTS[name], part) for part in text.split(",")]
+
+
+def _placed(error: InputError) -> InputError:
+    """The error with its option as field."""
+    options = {name: option for name, (option, _) in {**LISTS, **SINGLE}.items()}
+    options |= {"motion": "--motion", "slip_angle": "--slip-angles", "slip": "--slips", "load": "--loads"}
+    if error.file is None and error.field in options:
+        return InputError(error.message, field=options[error.field])
+    return error
+
+
+def _words(result: TyreForces) -> str:
+    fit = result.fit
+    formula, load = fit.formula, fit.formula.nominal_load
+    lines = [
+        result.study.title,
+        f"  {len(result.rows)} points from {result.points.load.min():.0f} to {result.points.load.max():.0f} N, "
+        f"{result.wheel.pressed.tyre.pressure / 1e3:.1f} kPa",
+    ]
+    if "lateral" in fit.errors:
+        lines.append(f"  cornering stiffness  {-formula.cornering_stiffness(load) / 1e3:.2f} kN/rad at {load:.0f} N")
+    if "aligning" in fit.errors:
+        lines.append(f"  pneumatic trail      {1e3 * formula.trail(load, 0.0):.1f} mm")
+    if "longitudinal" in fit.errors:
+        lines.append(f"  slip stiffness       {formula.slip_stiffness(load) / 1e3:.2f} kN")
+    lines += [f"  Magic Formula        {name}: rms {error:.2%} of the largest" for name, error in fit.errors.items()]
+    return "\n".join(lines)
+
+
+#: Place among the commands.
+ORDER = 46.7
+
+
+def register(app: typer.Typer) -> None:
+    """Add the command."""
+    app.command()(forces)

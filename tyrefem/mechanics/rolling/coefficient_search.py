@@ -1,0 +1,53 @@
+"""Coefficients of friction that agree with the sliding speeds and pressures which they bring about."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.mechanics.rolling.rolled import RolledTyre
+from tyrefem.mechanics.rolling.rolling_grid import RollingGrid
+
+Array = NDArray[np.float64]
+#: mu of sliding speed (m/s) and contact pressure (Pa), arrays alike.
+FrictionLaw = Callable[[Array, Array], Array]
+#: Share of the way to the law's coefficient: factors after a change of direction, and without one; the least.
+BACK, ON, LEAST = 0.5, 1.2, 0.02
+
+
+@dataclass(eq=False)
+class CoefficientSearch:
+    """Coefficients of a law from round to round.
+
+    Where mu rises with the sliding speed, a point may stick and slip in turn. So each point goes a share of the way to
+    its law's coefficient. The share falls where the direction changes, and grows again where it does not.
+
+    Parameters
+    ----------
+    friction : a coefficient, or its law.
+    """
+
+    friction: float | FrictionLaw
+    _share: Array = field(default_factory=lambda: np.zeros(0), init=False)
+    _last: Array = field(default_factory=lambda: np.zeros(0), init=False)
+
+    def of(self, grid: RollingGrid, last: RolledTyre | None) -> Array:
+        """(k,) coefficients after a ``last`` round on the same grid; None: the first round."""
+        if not callable(self.friction):
+            return np.full(grid.n_points, float(self.friction))
+        if last is None:
+            zero = np.zeros(grid.n_points)
+            self._share = np.zeros(0)
+            return np.asarray(self.friction(zero, zero), dtype=float)
+        law = np.asarray(self.friction(last.sliding_speed.ravel(), last.pressure.ravel()), dtype=float)
+        change = law - last.friction
+        if len(self._share) != grid.n_points:
+            self._share = np.ones(grid.n_points)
+        else:
+            turned = change * self._last < 0
+            self._share = np.clip(self._share * np.where(turned, BACK, ON), LEAST, 1.0)
+        self._last = change
+        return np.asarray(last.friction + self._share * change)

@@ -1,0 +1,180 @@
+"""Forces of a rolling tyre over load, slip, slip angle and camber, and the Magic Formula that fits them."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.brief import Brief
+from tyrefem.errors import InputError
+from tyrefem.mechanics.rolling.roll import HARMONICS, WheelOnRoad, driven, row, swept, wheel_on_road
+from tyrefem.mechanics.rolling.rolled import RolledTyre
+from tyrefem.mechanics.rolling.rolling_motion import RollingMotion
+from tyrefem.tyre_forces.fitting import MagicFormulaFit, fit_magic_formula
+from tyrefem.tyre_forces.points import ForcePoints
+from tyrefem.tyre_forces.property_file import TyreDimensions
+
+if TYPE_CHECKING:
+    from tyrefem.inputs.study import StudyData
+
+Array = NDArray[np.float64]
+#: Loads by default, over that of the drive's first phase.
+LOADS = (0.5, 0.75, 1.0, 1.25)
+#: Slip angles, rad, slips and cambers, rad, by default. A tyre that mirrors itself needs one sign without camber.
+SLIP_ANGLES = tuple(np.radians([0.0, 0.5, 1.0, 2.0, 3.0, 4.5, 6.0, 8.0, 10.0, 12.0]).tolist())
+SLIPS = (-0.3, -0.2, -0.12, -0.08, -0.05, -0.03, -0.015, -0.005, 0.005, 0.015, 0.03, 0.05, 0.08, 0.12, 0.2, 0.3)
+CAMBERS = (float(np.radians(3.0)),)
+#: With camber, where both signs are needed, one of so many slip angles is taken.
+THINNED = 2
+#: Harmonics of all points: the middle one of those that `roll` tries.
+MIDDLE = HARMONICS[len(HARMONICS) // 2]
+
+
+@dataclass(frozen=True, eq=False)
+class TyreForces(Brief):
+    """Forces of a study's tyre at many points of pure slip. Made by `tyre_forces`.
+
+    Parameters
+    ----------
+    wheel : tyre and road under the drive's load, without camber.
+    rows : of the points, as `roll.row`, with ``camber_rad`` and ``free``: 1 without torque, 0 at a given slip.
+    """
+
+    wheel: WheelOnRoad
+    rows: tuple[dict[str, float], ...]
+
+    @property
+    def study(self) -> StudyData:
+        """The study."""
+        return self.wheel.pressed.study
+
+    @property
+    def table(self) -> Any:
+        """pandas DataFrame of the points."""
+        import pandas as pd
+
+        return pd.DataFrame(self.rows)
+
+    @functools.cached_property
+    def points(self) -> ForcePoints:
+        """The points in the axes of the Magic Formula."""
+        names = {
+            "load": "F_z_N", "slip": "slip", "slip_angle": "slip_angle_rad", "camber": "camber_rad",
+            "longitudinal": "F_x_N", "lateral": "F_y_N", "aligning": "M_z_Nm",
+        }  # fmt: skip
+        columns = {name: np.array([row[key] for row in self.rows]) for name, key in names.items()}
+        # A wheel that rolls freely counts as without slip. Here it leans to its left, in the formula to the right.
+        columns["slip"] = np.where([row["free"] for row in self.rows], 0.0, columns["slip"])
+        columns["camber"] = -columns["camber"]
+        columns["pressure"] = np.full(len(self.rows), self.wheel.pressed.tyre.pressure)
+        return ForcePoints.of(columns)
+
+    @functools.cached_property
+    def fit(self) -> MagicFormulaFit:
+        """The Magic Formula of the points; its nominal load is the drive's."""
+        pressed = self.wheel.pressed
+        return fit_magic_formula(
+            self.points, self.wheel.rolling.reach, nominal_load=pressed.footprint.load,
+            nominal_pressure=pressed.tyre.pressure,
+        )  # fmt: skip
+
+    @property
+    def dimensions(self) -> TyreDimensions:
+        """What a `.tir` file states beside the coefficients: of the tyre as built, rim from the seat that is held."""
+        pressed = self.wheel.pressed
+        rings, state = pressed.tyre.body.rings, pressed.tyre.state
+        r, z = rings.nodes
+        seat = np.concatenate([rings.boundary_nodes(name) for name in state.fixed])
+        sides = 2.0 if pressed.study.section.half else 1.0
+        width, rim_radius = sides * float(np.ptp(z)), float(r[seat].min())
+        mass = 0.0
+        for region, members in (rings.mesh.subdomains or {}).items():
+            density = pressed.study.materials[region].density.law()
+            at_start = density(pressed.study.card.drive.initial) if callable(density) else density
+            mass += 2 * np.pi * sides * float(at_start) * float(rings.weights[members].sum())
+        return TyreDimensions(
+            width=width,
+            rim_radius=rim_radius,
+            rim_width=sides * float(np.ptp(z[seat]) if sides == 1.0 else np.abs(z[seat]).max()),
+            aspect_ratio=(float(r.max()) - rim_radius) / width,
+            mass=mass,
+            vertical_stiffness=pressed.footprint.stiffness,
+            speed=self.wheel.speed,
+        )
+
+
+def tyre_forces(
+    study: StudyData,
+    *,
+    loads: Sequence[float] | None = None,
+    slip_angles: Sequence[float] = SLIP_ANGLES,
+    slips: Sequence[float] = SLIPS,
+    cambers: Sequence[float] = CAMBERS,
+    harmonics: int = MIDDLE,
+    progress: Callable[[float, float], None] | None = None,
+    **wheel: Any,
+) -> TyreForces:
+    """Roll a study's tyre at every load: over the slips straight ahead, over the slip angles at every camber.
+
+    Without camber a half section needs one sign of the slip angle: the tyre is its own mirror image. With camber the
+    angles of both signs are computed.
+
+    Parameters
+    ----------
+    loads : N; by default `LOADS` times the drive's load.
+    slip_angles : rad, either sign. cambers : rad, beside none. slips : 1.
+    harmonics : of all points. progress : called with the number of curves done, and of all.
+    wheel : as in `roll`, without load, deflection and camber.
+
+    Raises
+    ------
+    InputError : errors of `roll`; a drive without a load, where no loads are given; fewer than two loads; a load that
+        is not positive.
+    """
+    for name in ("load", "deflection", "camber"):
+        if name in wheel:
+            raise InputError("is given by the table of forces", field=name)
+    phase = study.card.drive.phases[0]
+    if loads is None:
+        if phase.load is None:
+            raise InputError("the drive gives no load: give the loads", field="loads")
+        loads = [share * phase.load.start for share in LOADS]
+    if len(loads) < 2:
+        raise InputError("give at least two loads: the Magic Formula goes over load", field="loads")
+    for load in loads:
+        if not load > 0:
+            raise InputError(f"must be more than 0 N, not {load:g} N", field="loads")
+    nominal = phase.load.start if phase.load is not None else float(np.mean(loads))
+    on_road = wheel_on_road(study, load=nominal, **wheel)
+    rows: list[dict[str, float]] = []
+    pairs = [(camber, load) for camber in dict.fromkeys((0.0, *cambers)) for load in loads]
+    for done, (camber, load) in enumerate(pairs):
+        if progress is not None:
+            progress(done, len(pairs))
+        leaning = replace(on_road.rolling, camber=camber, influence=on_road.rolling.points)
+        wheel_under = replace(on_road, rolling=leaning, load=load, deflection=None)
+        free = wheel_under.free(harmonics)
+        angles = slip_angles[::THINNED] if camber else slip_angles
+        for states, steered in _curves(wheel_under, angles, () if camber else slips, free):
+            rows += [row(wheel_under, state) | {"camber_rad": camber, "free": float(steered)} for state in states]
+    return TyreForces(on_road, tuple(rows))
+
+
+def _curves(
+    wheel: WheelOnRoad, slip_angles: Sequence[float], slips: Sequence[float], free: RolledTyre
+) -> Iterator[tuple[list[RolledTyre], bool]]:
+    """Rolling tyres over slip angles of one sign after the other, True; then over braking and driving slips, False.
+    Each tyre is found from the one before, the first from free rolling."""
+    mirrors = wheel.pressed.study.section.half and not wheel.rolling.camber
+    for sign in (1.0,) if mirrors else (1.0, -1.0):
+        angles = sorted({abs(angle) for angle in slip_angles} - ({0.0} if sign < 0 else set()))
+        motions = [(RollingMotion(sign * angle), driven(None, None, None)) for angle in angles]
+        yield swept(wheel, motions, free.harmonics), True
+    for some in ([slip for slip in slips if slip < 0], [slip for slip in slips if slip > 0]):
+        ordered = sorted(some, key=abs)
+        yield swept(wheel, [(RollingMotion(), driven(slip, None, None)) for slip in ordered], free.harmonics), False
