@@ -1,4 +1,4 @@
-"""`tyrefem forces`: files that agree with each other, a `.tir` file that gives the forces back, refusals in one line."""
+"""`tyrefem forces`: files that agree, a `.tir` file that gives the forces back, refusals in one line."""
 
 from __future__ import annotations
 
@@ -48,7 +48,15 @@ def test_files_agree(here: Path, capfd: pytest.CaptureFixture[str]) -> None:
 
 
 def test_camber_leans_the_forces(here: Path) -> None:
-    line = ["forces", STUDY, *FEW[:2], "--slip-angles", "0 deg, 1 deg, 2 deg, 5 deg, 9 deg", "--slips", "none"]
+    line = [
+        "forces",
+        STUDY,
+        *FEW[:2],
+        "--slip-angles",
+        "0 deg, 1 deg, 2 deg, 3 deg, 5 deg, 7 deg, 9 deg, 12 deg",
+        "--slips",
+        "none",
+    ]
     assert main([*line, "--cambers", "4 deg", "--no-pictures", "--out", "out", *COARSE]) == 0
     with (here / "out" / "forces.csv").open(encoding="utf-8") as lines:
         rows = [{name: float(value) for name, value in row.items()} for row in csv.DictReader(lines)]

@@ -22,7 +22,9 @@ SAVKOOR = {
 
 
 def with_law(law: dict[str, object]) -> Study:
-    return study("passenger-205-55r16", COARSE | {"materials.tread": {"base": "rubber-tread-passenger", "friction": law}})
+    return study(
+        "passenger-205-55r16", COARSE | {"materials.tread": {"base": "rubber-tread-passenger", "friction": law}}
+    )
 
 
 def test_the_card_of_the_region_on_the_road_decides() -> None:

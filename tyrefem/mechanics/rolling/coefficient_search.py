@@ -14,8 +14,8 @@ from tyrefem.mechanics.rolling.rolling_grid import RollingGrid
 Array = NDArray[np.float64]
 #: mu of sliding speed (m/s) and contact pressure (Pa), arrays alike.
 FrictionLaw = Callable[[Array, Array], Array]
-#: Share of the way to the law's coefficient: factors after a change of direction, and without one; the least.
-BACK, ON, LEAST = 0.5, 1.2, 0.02
+#: Share of the way to the law's coefficient: factor after a change of direction; the most, over the number of rounds.
+BACK, MOST = 0.6, 4.0
 
 
 @dataclass(eq=False)
@@ -23,7 +23,7 @@ class CoefficientSearch:
     """Coefficients of a law from round to round.
 
     Where mu rises with the sliding speed, a point may stick and slip in turn. So each point goes a share of the way to
-    its law's coefficient. The share falls where the direction changes, and grows again where it does not.
+    its law's coefficient. The share falls where the direction changes, and with the number of rounds.
 
     Parameters
     ----------
@@ -32,6 +32,7 @@ class CoefficientSearch:
 
     friction: float | FrictionLaw
     _share: Array = field(default_factory=lambda: np.zeros(0), init=False)
+    _round: int = field(default=0, init=False)
     _last: Array = field(default_factory=lambda: np.zeros(0), init=False)
 
     def of(self, grid: RollingGrid, last: RolledTyre | None) -> Array:
@@ -40,14 +41,15 @@ class CoefficientSearch:
             return np.full(grid.n_points, float(self.friction))
         if last is None:
             zero = np.zeros(grid.n_points)
-            self._share = np.zeros(0)
+            self._share, self._round = np.zeros(0), 0
             return np.asarray(self.friction(zero, zero), dtype=float)
         law = np.asarray(self.friction(last.sliding_speed.ravel(), last.pressure.ravel()), dtype=float)
         change = law - last.friction
         if len(self._share) != grid.n_points:
-            self._share = np.ones(grid.n_points)
+            self._share, self._round = np.ones(grid.n_points), 0
         else:
             turned = change * self._last < 0
-            self._share = np.clip(self._share * np.where(turned, BACK, ON), LEAST, 1.0)
+            self._round += 1
+            self._share = np.minimum(self._share * np.where(turned, BACK, 1.0), MOST / self._round)
         self._last = change
         return np.asarray(last.friction + self._share * change)

@@ -29,7 +29,7 @@ SETTLED, ROUNDS = 1e-7, 60
 #: Change of the share of the first step in contact at which it has settled; rounds before it is left as it is.
 FRONT_SETTLED, FRONT_ROUNDS = 0.05, 3
 #: With a law of friction, where a few points may stick and slip in turn: change of all forces together.
-SETTLED_LAW = 1e-4
+SETTLED_LAW = 5e-4
 
 
 @dataclass(frozen=True)
