@@ -18,8 +18,8 @@ Array = NDArray[np.float64]
 #: Bounds: shape factors as in published fits, bends at most 1, friction positive. Others are free.
 BOUNDS: dict[str, tuple[float, float]] = {
     "PCX1": (1.0, 2.2), "PDX1": (0.05, 5.0), "PEX1": (-30.0, 1.0), "PEX4": (-0.9, 0.9), "PKX1": (1.0, 200.0),
-    "PCY1": (1.0, 2.2), "PDY1": (0.05, 5.0), "PEY1": (-30.0, 1.0), "PEY3": (-0.9, 0.9), "PKY1": (-200.0, -0.5),
-    "PKY2": (0.2, 20.0), "QBZ1": (0.5, 60.0), "QCZ1": (0.6, 1.6), "QEZ1": (-30.0, 1.0), "QDZ1": (-0.5, 0.5),
+    "PCY1": (1.0, 2.2), "PDY1": (0.05, 3.0), "PEY1": (-12.0, 1.0), "PEY3": (-0.9, 0.9), "PKY1": (-200.0, -0.5),
+    "PKY2": (0.2, 8.0), "QBZ1": (0.5, 60.0), "QCZ1": (0.6, 1.6), "QEZ1": (-30.0, 1.0), "QDZ1": (-0.5, 0.5),
 }  # fmt: skip
 #: First values.
 START = {"PCX1": 1.6, "PDX1": 1.0, "PKX1": 20.0, "PCY1": 1.3, "PDY1": 1.0, "PKY1": -20.0, "PKY2": 1.5, "PKY4": 2.0}
@@ -35,8 +35,8 @@ LONGITUDINAL_ODD = {1: "PEX4 PHX1 PVX1", 2: "PHX2 PVX2"}
 LATERAL_ODD = {1: "PEY3 PHY1 PVY1", 2: "PHY2 PVY2"}
 ALIGNING_ODD = {1: "QHZ1 QDZ6 QEZ4", 2: "QHZ2 QDZ7"}
 #: Coefficients of the camber, where several cambers are given.
-LATERAL_CAMBER = {1: "PDY3 PEY4 PEY5 PKY3 PKY5 PKY6 PVY3", 2: "PKY7 PVY4"}
-ALIGNING_CAMBER = {1: "QBZ4 QBZ5 QDZ3 QDZ4 QDZ8 QEZ5 QHZ3", 2: "QDZ9 QHZ4"}
+LATERAL_CAMBER = {1: "PDY3 PKY3 PKY6 PVY3", 2: "PKY7 PVY4"}
+ALIGNING_CAMBER = {1: "QBZ5 QDZ3 QDZ8 QHZ3", 2: "QDZ9 QHZ4"}
 #: Coefficients of the pressure, where several pressures are given.
 LONGITUDINAL_PRESSURE, LATERAL_PRESSURE, ALIGNING_PRESSURE = "PPX1 PPX3", "PPY1 PPY2 PPY3", "PPZ1"
 #: Coefficients that must not be zero, fitted or not; the stiffness, whose first value the points give.
@@ -45,7 +45,7 @@ SLOPE = {"longitudinal": "PKX1", "lateral": "PKY1"}
 #: Fewest points of a fit.
 FEWEST = 4
 #: Pull towards the first values: it decides where two coefficients do the same.
-PULL = 1e-6
+PULL = 1e-5
 ITERATIONS = 200
 #: Loads, cambers and pressures nearer than this share count as the same.
 SAME = 0.02
@@ -82,7 +82,12 @@ class MagicFormulaFit(Brief):
 
 
 def fit_magic_formula(
-    points: ForcePoints, radius: float, *, nominal_load: float | None = None, nominal_pressure: float | None = None
+    points: ForcePoints,
+    radius: float,
+    *,
+    nominal_load: float | None = None,
+    nominal_pressure: float | None = None,
+    symmetric: bool = False,
 ) -> MagicFormulaFit:
     """The Magic Formula 6.1 that fits points of pure slip best, in the least squares of force over load.
 
@@ -94,6 +99,7 @@ def fit_magic_formula(
     points : at least four of each force that is to be fitted.
     radius : of the unloaded tyre, m. nominal_load : N; by default the mean of the smallest and the largest load.
     nominal_pressure : Pa; by default the median.
+    symmetric : a tyre that is its own mirror image: without camber it has no ply steer and no conicity.
 
     Raises
     ------
@@ -105,7 +111,7 @@ def fit_magic_formula(
     known: dict[str, float] = {}
     fitted: list[str] = []
     errors: dict[str, float] = {}
-    for part in _parts(points, radius):
+    for part in _parts(points, radius, symmetric=symmetric):
         names = [name for stage in part.stages for name in stage]
         enough = len(part.points) >= max(FEWEST, len(names)) and np.abs(part.measured).max() > 0
         if not enough or (part.name == "aligning" and "lateral" not in errors):
@@ -153,7 +159,7 @@ class _Part:
         return values
 
 
-def _parts(points: ForcePoints, radius: float) -> list[_Part]:
+def _parts(points: ForcePoints, radius: float, *, symmetric: bool) -> list[_Part]:
     ahead, rolling = points.where_if(points.straight), points.where_if(points.free)
     parts = []
     if ahead is not None:
@@ -161,9 +167,9 @@ def _parts(points: ForcePoints, radius: float) -> list[_Part]:
         predict = MagicFormula.longitudinal_force
         parts.append(_Part("longitudinal", ahead, ahead.longitudinal, predict, ahead.load, stages))
     if rolling is not None:
-        stages = _stages(rolling, LATERAL, LATERAL_ODD, LATERAL_CAMBER, LATERAL_PRESSURE)
+        stages = _stages(rolling, LATERAL, {} if symmetric else LATERAL_ODD, LATERAL_CAMBER, LATERAL_PRESSURE)
         parts.append(_Part("lateral", rolling, rolling.lateral, MagicFormula.lateral_force, rolling.load, stages))
-        stages = _stages(rolling, ALIGNING, ALIGNING_ODD, ALIGNING_CAMBER, ALIGNING_PRESSURE)
+        stages = _stages(rolling, ALIGNING, {} if symmetric else ALIGNING_ODD, ALIGNING_CAMBER, ALIGNING_PRESSURE)
         scale = 0.1 * radius * rolling.load
         parts.append(_Part("aligning", rolling, rolling.aligning, MagicFormula.aligning_moment, scale, stages))
     return parts

@@ -80,7 +80,7 @@ class TyreForces(Brief):
         pressed = self.wheel.pressed
         return fit_magic_formula(
             self.points, self.wheel.rolling.reach, nominal_load=pressed.footprint.load,
-            nominal_pressure=pressed.tyre.pressure,
+            nominal_pressure=pressed.tyre.pressure, symmetric=pressed.study.section.half,
         )  # fmt: skip
 
     @property
