@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 #: mu of sliding speed (m/s) and contact pressure (Pa), arrays alike.
 FrictionLaw = Callable[[Array, Array], Array]
 #: Share of the way to the law's coefficient: factor after a change of direction; the most, over the number of rounds.
-BACK, MOST = 0.6, 4.0
+BACK, MOST = 0.6, 8.0
 
 
 @dataclass(eq=False)

@@ -188,13 +188,14 @@ def wheel_on_road(
     camber: float = 0.0,
     friction: float | FrictionLaw | None = None,
     speed: float | None = None,
-    pressure: float | None = None,
     load: float | None = None,
     deflection: float | None = None,
-    drum_diameter: float | None = None,
     motion: str = "linear",
+    **pressing: Any,
 ) -> WheelOnRoad:
     """Inflate and press a study's tyre; defaults are values at the start of the drive's first phase.
+
+    ``pressing``: ``pressure``, Pa, and ``drum_diameter``, m, as in `press`.
 
     Raises
     ------
@@ -203,9 +204,7 @@ def wheel_on_road(
     NEEDS.check(study)
     if speed is not None and not speed > 0:
         raise InputError(f"must be more than 0 m/s, not {speed:g} m/s", field="speed")
-    pressed = press(
-        study, pressure=pressure, load=load, deflection=deflection, drum_diameter=drum_diameter, motion=motion
-    )
+    pressed = press(study, load=load, deflection=deflection, motion=motion, **pressing)
     phase = study.card.drive.phases[0]
     if load is None and deflection is None:
         load = None if phase.load is None else phase.load.start

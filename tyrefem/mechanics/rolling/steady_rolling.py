@@ -28,8 +28,9 @@ Array = NDArray[np.float64]
 SETTLED, ROUNDS = 1e-7, 60
 #: Change of the share of the first step in contact at which it has settled; rounds before it is left as it is.
 FRONT_SETTLED, FRONT_ROUNDS = 0.05, 3
-#: With a law of friction, where a few points may stick and slip in turn: change of all forces together.
-SETTLED_LAW = 5e-4
+#: With a law of friction a few points may stick and slip in turn: after so many rounds the change of all forces
+#: together may be this.
+PATIENCE, SETTLED_LAW = 16, 5e-4
 
 
 @dataclass(frozen=True)
@@ -134,7 +135,8 @@ class SteadyRolling(Brief):
                 last = None
                 continue
             forces = rolled.contact.forces
-            size, settled = (np.sum, SETTLED_LAW) if callable(self.friction) else (np.max, SETTLED)
+            loosely = callable(self.friction) and number >= PATIENCE
+            size, settled = (np.sum, SETTLED_LAW) if loosely else (np.max, SETTLED)
             change = math.inf if before is None else float(size(np.abs(forces - before)))
             fronted = self._fronted(rolled, front) or number >= FRONT_ROUNDS
             # A front that goes to and fro between two steps is left where it is.
