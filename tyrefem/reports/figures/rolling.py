@@ -49,13 +49,19 @@ def described(rolled: RolledStudy) -> str:
 
 def contact_figure(rolled: RolledStudy) -> Figure:
     """Draw pressure, traction with its direction, and sliding speed with the slipping points, over the footprint."""
+    from matplotlib.tri import Triangulation
+
     state = rolled.state
     drawn = figure(13.2, 4.0 + TITLE)
     shape = state.pressure.shape
     x, y = (1e3 * row.reshape(shape) for row in state.places[:2])
     touching = state.states > 0
     triangles = _triangles(*shape)
-    open_ = ~touching.ravel()[triangles].any(axis=1)
+    apart = np.append(_over_grooves(rolled), False)
+    # A triangle between two rings is counted by its lower ring.
+    lower = (triangles % shape[1]).min(axis=1)
+    drawn_over = Triangulation(x.ravel(), y.ravel(), triangles)
+    drawn_over.set_mask(~touching.ravel()[triangles].any(axis=1) | apart[lower])
     size = np.linalg.norm(state.traction, axis=-1) / 1e3
     panels = (
         ("contact pressure [kPa]", state.pressure / 1e3),
@@ -66,9 +72,8 @@ def contact_figure(rolled: RolledStudy) -> Figure:
         axes = add_axes(drawn, 0.7 + 4.35 * number, 0.55, 2.7, 3.3)
         highest = float(np.quantile(values[touching], 0.98)) if touching.any() else 1.0
         filled = axes.tripcolor(
-            x.ravel(), y.ravel(), triangles, facecolors=values.ravel()[triangles].mean(axis=1), mask=open_,
-            cmap=ENERGY_MAP, vmin=0.0, vmax=max(highest, 1e-9),
-        )  # fmt: skip
+            drawn_over, values.ravel(), shading="gouraud", cmap=ENERGY_MAP, vmin=0.0, vmax=max(highest, 1e-9)
+        )
         if number == 1:
             _arrows(axes, x[touching], y[touching], state.traction[touching] / 1e3)
         if number == 2:
@@ -92,6 +97,15 @@ def _triangles(angles: int, across: int) -> NDArray[np.int64]:
     number = np.arange(angles * across).reshape(angles, across)
     a, b, c, d = (part.ravel() for part in (number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]))
     return np.concatenate([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)])
+
+
+def _over_grooves(rolled: RolledStudy) -> NDArray[np.bool_]:
+    """(m - 1,) True where a groove of the tread lies between a point and the next to its left."""
+    influence = rolled.state.grid.influence
+    z, grooves = influence.places[1], influence.tread.grooves
+    middle = (z[1:] + z[:-1]) / 2
+    middle = np.abs(middle) if influence.tread.half else middle
+    return np.asarray(((middle[:, None] > grooves[:, 0]) & (middle[:, None] < grooves[:, 1])).any(axis=1))
 
 
 def _arrows(axes: Axes, x: Array, y: Array, traction: Array) -> None:
