@@ -101,8 +101,9 @@ the law of the heat, its amplitude and standard deviation, and the source "infer
 `Prior` takes unit, meaning, sd, lower and upper bound. The method is one of the ports of `tyrefem.effects.Effect`;
 `tyrefem/effects/tyre.py` lists what a port may ask of its `tyre`. A choice (a sensor, a side) is a field with
 `Field(description=..., examples=[...])`. `of_drive: ClassVar[bool] = True` says that films, surroundings and rim
-depend on time through the drive alone: reduced models then evaluate the effect once per phase. A port that jumps within
-a phase states when: `jumps: ClassVar[tuple[float, ...]] = (300.0,)`, in seconds.
+depend on time through the drive alone: reduced models then evaluate the effect once per phase.
+`of_place: ClassVar[bool] = True` says that `heat_factor` depends on the place alone: it is then evaluated once per set
+of points. A port that jumps within a phase states when: `jumps: ClassVar[tuple[float, ...]] = (300.0,)`, in seconds.
 
 ## An effect with a state of its own
 

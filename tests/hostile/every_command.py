@@ -25,6 +25,16 @@ MORE = {
     "plan": ["--set", "plan.drives=2", "--set", "plan.sensors_most=0"],
     "export": ["--tolerance", "50 K"],
     "rig layers": ["--most", "1"],
+    "forces": [
+        "--loads",
+        "8 kN, 12 kN",
+        "--slip-angles",
+        "1 deg, 3 deg, 5 deg, 8 deg",
+        "--slips",
+        "none",
+        "--cambers",
+        "none",
+    ],
     "wear": ["--set", "materials.tread=rubber-tread-aircraft"],
     "life": ["--set", "mechanics.strain=fem", "--set", "mechanics.motion=linear", "--no-sensitivity"],
 }

@@ -37,6 +37,7 @@ COMMANDS = {
     "life": ["life", "STUDY"],
     "wear": ["wear", "STUDY"],
     "roll": ["roll", "STUDY"],
+    "forces": ["forces", "STUDY"],
     "strain": ["strain", "STUDY"],
     "mesh": ["show", "mesh", "STUDY"],
     "mesh file": ["show", "mesh", "STUDY", "--out", "tyre.vtu"],
