@@ -50,7 +50,7 @@ def forces(
     slips: Annotated[str | None, typer.Option(help="Slips '-5 %, 5 %'; default -30 to 30 %; positive drives.")] = None,
     cambers: Annotated[str | None, typer.Option(help="Cambers beside 0, '3 deg'; default 3 deg; 'none'.")] = None,
     friction: Annotated[
-        str | None, typer.Option(help="Coefficient of friction; default: the tread card's [friction], else 1.")
+        str | None, typer.Option(help="Coefficient of friction; default: that of the tread's card, else 1.")
     ] = None,
     speed: Annotated[str | None, typer.Option(help="Speed; default: the drive's.")] = None,
     pressure: Annotated[str | None, typer.Option(help="Gauge pressure, e.g. '2.2 bar'.")] = None,

@@ -61,7 +61,7 @@ def roll(
     camber: Annotated[str, typer.Option(help="Camber '1 deg'; positive: the wheel leans to its left.")] = "0 deg",
     turn_slip: Annotated[str, typer.Option(help="Curvature of the path, '0.02 1/m'; positive: left.")] = "0 1/m",
     friction: Annotated[
-        str | None, typer.Option(help="Coefficient of friction; default: the tread card's [friction], else 1.")
+        str | None, typer.Option(help="Coefficient of friction; default: that of the tread's card, else 1.")
     ] = None,
     speed: Annotated[str | None, typer.Option(help="Speed; default: the drive's.")] = None,
     pressure: Annotated[str | None, typer.Option(help="Gauge pressure, e.g. '2.2 bar'.")] = None,
