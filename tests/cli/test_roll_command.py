@@ -49,6 +49,8 @@ def test_a_curve(here: Path, capfd: pytest.CaptureFixture[str]) -> None:
     assert abs(forces[0]) < 1.0
     assert forces[1] < 0
     assert numbers["cornering_stiffness_N_rad"] > -forces[1] / float(rows[1]["slip_angle_rad"])
+    # A tyre is softer than its tread alone, and stiffer forward than sideways.
+    assert numbers["standing_longitudinal_stiffness_N_m"] > numbers["standing_lateral_stiffness_N_m"] > 1e4
     assert 0.95 < -forces[2] / (0.6 * float(rows[2]["F_z_N"])) <= 1.0
     assert (here / "out" / "curve.png").read_bytes().startswith(b"\x89PNG")
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -25,6 +26,7 @@ from tyrefem.mechanics.rolling.roll import (
 )
 from tyrefem.mechanics.rolling.rolled import RolledTyre
 from tyrefem.mechanics.rolling.rolling_motion import RollingMotion
+from tyrefem.mechanics.rolling.standing import StandingStiffness, standing
 
 if TYPE_CHECKING:
     from tyrefem.inputs.study import StudyData
@@ -81,6 +83,11 @@ class SlipCurve(Brief):
         """The study."""
         return self.wheel.pressed.study
 
+    @functools.cached_property
+    def standing(self) -> StandingStiffness:
+        """Longitudinal and lateral stiffness of the standing tyre, where it rolls freely."""
+        return standing(self.wheel.free(self.states[0].harmonics))
+
     @property
     def table(self) -> Any:
         """pandas DataFrame of `roll.row`."""
@@ -114,6 +121,8 @@ class SlipCurve(Brief):
             "aligning_stiffness_Nm_rad": self.stiffness.aligning,
             "slip_stiffness_N": self.stiffness.slip,
             "pneumatic_trail_m": self.stiffness.trail,
+            "standing_longitudinal_stiffness_N_m": self.standing.longitudinal,
+            "standing_lateral_stiffness_N_m": self.standing.lateral,
             "effective_rolling_radius_m": self.wheel.free(self.states[0].harmonics).travel,
             "peak": self.peak,
             "points": [row(self.wheel, state) for state in self.states],
