@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import tomllib
 from collections.abc import Collection, Iterable
 from pathlib import Path
@@ -96,6 +97,23 @@ def settings(pairs: list[str] | None) -> dict[str, Any]:
             value = text
         changes[key.strip()] = value
     return changes
+
+
+def read_quantity(option: str, text: str, unit: str, **bounds: float) -> float:
+    """The quantity of an option, in SI; ``bounds`` as of `Unit`. A drum may be ``flat``: its diameter is infinite.
+
+    Raises
+    ------
+    InputError : no such quantity; its field is the option.
+    """
+    from tyrefem.quantity import Unit
+
+    if option == "--drum" and text.strip() == "flat":
+        return math.inf
+    try:
+        return Unit(unit, **bounds)(text)
+    except InputError as error:
+        raise error.within(field=option) from None
 
 
 def print_json(data: dict[str, Any]) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -16,6 +15,7 @@ from tyrefem.cli.common import (
     SetOption,
     StudyArgument,
     print_json,
+    read_quantity,
     settings,
     warn,
 )
@@ -82,7 +82,9 @@ def forces(
     given: dict[str, Any] = {"motion": motion}
     given |= {name: _listed(name, text) for name, text in lists.items() if text is not None}
     single = {"friction": friction, "speed": speed, "pressure": pressure, "drum_diameter": drum}
-    given |= {name: _read(*SINGLE[name], text) for name, text in single.items() if text is not None}
+    given |= {
+        name: read_quantity(SINGLE[name][0], text, SINGLE[name][1]) for name, text in single.items() if text is not None
+    }
     loaded = load_study(study, settings(changes), case)
     NEEDS.check(loaded)
     warn(loaded.warnings)
@@ -105,21 +107,11 @@ def forces(
     typer.echo(f"results in {folder}")
 
 
-def _read(option: str, unit: str, text: str) -> float:
-    from tyrefem.quantity import Unit
-
-    if option == "--drum" and text.strip() == "flat":
-        return math.inf
-    try:
-        return Unit(unit)(text.strip())
-    except InputError as error:
-        raise error.within(field=option) from None
-
-
 def _listed(name: str, text: str) -> list[float]:
     if text.strip() == "none":
         return []
-    return [_read(*LISTS[name], part) for part in text.split(",")]
+    option, unit = LISTS[name]
+    return [read_quantity(option, part.strip(), unit) for part in text.split(",")]
 
 
 def _placed(error: InputError) -> InputError:

@@ -15,6 +15,7 @@ from tyrefem.cli.common import (
     SetOption,
     StudyArgument,
     print_json,
+    read_quantity,
     settings,
     warn,
 )
@@ -24,7 +25,6 @@ from tyrefem.output.folder import results_folder
 
 if TYPE_CHECKING:
     from tyrefem.mechanics.footprint.natural_frequencies import NaturalFrequencies
-    from tyrefem.quantity import Unit
 
 
 def modes(
@@ -50,12 +50,11 @@ def modes(
     from tyrefem.api import study as load
     from tyrefem.mechanics.footprint.natural_frequencies import NEEDS, natural_frequencies
     from tyrefem.mechanics.rolling.rotating_modes import rotating_frequencies
-    from tyrefem.quantity import Unit
     from tyrefem.reports.modes import FILES, write_files
 
-    given = None if pressure is None else _quantity("--pressure", pressure, Unit("Pa", gt=0))
-    turning = None if speed is None else _quantity("--speed", speed, Unit("m/s", gt=0))
-    strain = _quantity("--amplitude", amplitude, Unit("1", gt=0, le=1))
+    given = None if pressure is None else read_quantity("--pressure", pressure, "Pa", gt=0)
+    turning = None if speed is None else read_quantity("--speed", speed, "m/s", gt=0)
+    strain = read_quantity("--amplitude", amplitude, "1", gt=0, le=1)
     loaded = load(study, settings(changes), case)
     NEEDS.check(loaded)
     warn(loaded.warnings)
@@ -79,13 +78,6 @@ def modes(
         return
     typer.echo(_words(result))
     typer.echo(f"results in {folder}")
-
-
-def _quantity(option: str, text: str, unit: Unit) -> float:
-    try:
-        return unit(text)
-    except InputError as error:
-        raise error.within(field=option) from None
 
 
 def _words(result: NaturalFrequencies) -> str:

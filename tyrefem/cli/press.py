@@ -17,6 +17,7 @@ from tyrefem.cli.common import (
     StudyArgument,
     fail,
     print_json,
+    read_quantity,
     settings,
     warn,
 )
@@ -104,7 +105,11 @@ def press(
     if temperature is not None:
         raise InputError("is for --critical-speed; a footprint has its cards' moduli", field="--temperature")
     texts = {"pressure": pressure, "load": load, "deflection": deflection, "drum_diameter": drum, "camber": camber}
-    given = {name: _read(name, text) for name, text in texts.items() if text is not None}
+    given = {
+        name: read_quantity(OPTIONS[name][0], text, OPTIONS[name][1], **({} if name == "camber" else {"gt": 0}))
+        for name, text in texts.items()
+        if text is not None
+    }
     chosen = _motion(motion, balanced=balanced)
     loaded = load_study(study, settings(changes), case)
     NEEDS.check(loaded)
@@ -131,18 +136,6 @@ def press(
         return
     typer.echo(_words(result))
     typer.echo(f"results in {folder}")
-
-
-def _read(name: str, text: str) -> float:
-    from tyrefem.quantity import Unit
-
-    option, unit = OPTIONS[name]
-    if name == "drum_diameter" and text.strip() == "flat":
-        return math.inf
-    try:
-        return Unit(unit)(text) if name == "camber" else Unit(unit, gt=0)(text)
-    except InputError as error:
-        raise error.within(field=option) from None
 
 
 def _motion(motion: str | None, *, balanced: bool) -> str | None:

@@ -16,6 +16,7 @@ from tyrefem.cli.common import (
     SetOption,
     StudyArgument,
     print_json,
+    read_quantity,
     settings,
     warn,
 )
@@ -97,7 +98,11 @@ def roll(
         "camber": camber, "torque": torque, "axle_force": axle_force, "turn_slip": turn_slip, "friction": friction,
         "speed": speed, "pressure": pressure, "load": load, "deflection": deflection, "drum_diameter": drum,
     }  # fmt: skip
-    given: dict[str, Any] = {name: _read(name, text) for name, text in texts.items() if text is not None}
+    given: dict[str, Any] = {
+        name: read_quantity(OPTIONS[name][0], text, OPTIONS[name][1])
+        for name, text in texts.items()
+        if text is not None
+    }
     given["motion"] = motion
     for name, text in {"slip_angle": slip_angle, "slip": slip}.items():
         if text is not None:
@@ -133,28 +138,17 @@ def roll(
     typer.echo(f"results in {folder}")
 
 
-def _read(name: str, text: str) -> float:
-    from tyrefem.quantity import Unit
-
-    option, unit = {**OPTIONS, **VARIED}[name]
-    if name == "drum_diameter" and text.strip() == "flat":
-        return math.inf
-    try:
-        return Unit(unit)(text)
-    except InputError as error:
-        raise error.within(field=option) from None
-
-
 def _values(name: str, text: str) -> float | list[float]:
     """A value; a list of 'a, b, ...'; or evenly spaced values of 'from:to:number'."""
-    option, _ = VARIED[name]
+    option, unit = VARIED[name]
     if ":" not in text:
-        values = [_read(name, part) for part in text.split(",")]
+        values = [read_quantity(option, part, unit) for part in text.split(",")]
         return values if len(values) > 1 else values[0]
     parts = text.split(":")
     if len(parts) != 3 or not parts[2].strip().isdigit() or not 2 <= int(parts[2]) <= MOST:
         raise InputError(f"'{text}' is not from:to:number, like '-10 deg:10 deg:21' (number 2 to {MOST})", field=option)
-    first, last, count = _read(name, parts[0]), _read(name, parts[1]), int(parts[2])
+    first, last = (read_quantity(option, part, unit) for part in parts[:2])
+    count = int(parts[2])
     return [first + (last - first) * k / (count - 1) for k in range(count)]
 
 

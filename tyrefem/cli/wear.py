@@ -15,6 +15,7 @@ from tyrefem.cli.common import (
     SetOption,
     StudyArgument,
     print_file,
+    read_quantity,
     settings,
     warn,
 )
@@ -57,7 +58,11 @@ def wear(
     from tyrefem.wear.worn_section import worn_section
 
     texts = {"slip_angle": slip_angle, "slip": slip, "camber": camber, "friction": friction, "distance": distance}
-    given: dict[str, Any] = {name: _read(name, text) for name, text in texts.items() if text is not None}
+    given: dict[str, Any] = {
+        name: read_quantity(OPTIONS[name][0], text, OPTIONS[name][1], **({"gt": 0} if name == "distance" else {}))
+        for name, text in texts.items()
+        if text is not None
+    }
     kilometres = given.pop("distance", 0.0) / 1e3
     loaded = load(study, settings(changes), case)
     NEEDS.check(loaded)
@@ -78,16 +83,6 @@ def wear(
         return
     typer.echo(words(rolled, worn_off))
     typer.echo(f"results in {folder}")
-
-
-def _read(name: str, text: str) -> float:
-    from tyrefem.quantity import Unit
-
-    option, unit = OPTIONS[name]
-    try:
-        return Unit(unit, gt=0)(text) if name == "distance" else Unit(unit)(text)
-    except InputError as error:
-        raise error.within(field=option) from None
 
 
 #: Place among the commands.
