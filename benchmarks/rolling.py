@@ -1,8 +1,8 @@
 """Rolling with friction: closed forms, power balance, speed, and the measured 205/60R15 over its loads.
 
-    python benchmarks/rolling.py [--closed-forms] [--measured] [--speed] [--pictures]
+    python benchmarks/rolling.py [--closed-forms] [--loss] [--measured] [--speed] [--pictures]
 
-Writes docs/evidence/tables/rolling-closed-forms.csv and rolling-measured.csv. Nothing is fitted.
+Writes docs/evidence/tables/rolling-closed-forms.csv, rolling-loss.csv and rolling-measured.csv. Nothing is fitted.
 """
 
 from __future__ import annotations
@@ -22,15 +22,19 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 import numpy as np
 
 import tyrefem as tf
+from tyrefem.mechanics.footprint.compliance import TreadCompliance
 from tyrefem.mechanics.footprint.contact import Pressing
 from tyrefem.mechanics.footprint.example_tyre import PlainTyre
 from tyrefem.mechanics.footprint.road import Road
 from tyrefem.mechanics.rolling.example_bodies import bristles, half_plane, string
+from tyrefem.mechanics.rolling.free_rolling import LossyTyre, rolling_resistance
 from tyrefem.mechanics.rolling.friction import Control, RollingContact
+from tyrefem.mechanics.rolling.lossy_harmonics import LossyHarmonics
 from tyrefem.mechanics.rolling.roll import settled, wheel_on_road
 from tyrefem.mechanics.rolling.rolling_motion import RollingMotion
 from tyrefem.mechanics.rolling.slip_curve import slip_stiffness
 from tyrefem.mechanics.rolling.steady_rolling import RollingLoads, SteadyRolling
+from tyrefem.mechanics.rolling.tread_influence import TreadInfluence
 
 ROOT = Path(__file__).resolve().parents[1]
 TABLES = ROOT / "docs" / "evidence" / "tables"
@@ -44,6 +48,8 @@ BALANCES = (
     (math.inf, -4, 4, 0, 0), (math.inf, 0, 0, 300, 0), (math.inf, 0, 2, -400, 0), (math.inf, 3, 6, 200, 0.02),
     (1.7, 0, 3, 0, 0), (1.7, 2, 4, -300, 0),
 )  # fmt: skip
+#: Straight ahead without torque; tan delta of the tyre with loss.
+STRAIGHT, TANGENT = (math.inf, 0, 0, 0, 0), 0.15
 
 
 def rigid(count: int, slip: float, component: int) -> Any:
@@ -113,6 +119,39 @@ def balances() -> Iterator[tuple[str, float, float]]:
         road = "flat" if math.isinf(drum) else f"drum {drum:g} m"
         name = f"power, W: {road}, camber {camber}, slip angle {angle} deg, torque {torque} N m, path {curvature:g} 1/m"
         yield name, rolled.friction_power, rolled.lost_power
+
+
+def loss() -> None:
+    """Write the power of axle, friction and rubber of the plain tyre with loss, and its free rolling."""
+    state = PlainTyre().state(along=8)
+    lossy = LossyHarmonics(state, angular_speed=20.0 / 0.31, tangents=lambda _: np.full(len(state.bulk), TANGENT))
+    points, free = TreadInfluence(TreadCompliance(lossy)), LossyTyre(state, lossy=lossy)
+    with (TABLES / "rolling-loss.csv").open("w", encoding="utf-8", newline="") as stream:
+        table = csv.writer(stream, lineterminator="\n")
+        table.writerow([
+            "drum [m]", "camber [deg]", "slip angle [deg]", "torque [N m]", "path [1/m]", "friction", "harmonics",
+            "friction power [W]", "power in the rubber [W]", "axle power [W]", "deviation [%]", "F_x [N]",
+        ])  # fmt: skip
+        for harmonics in (80, 120, 180, 270):
+            resistance = rolling_resistance(free, harmonics, 0.02, load=3000.0)
+            print(f"{harmonics} harmonics, free rolling without friction: {resistance.by_offset:.3f} N by offset, "
+                  f"{resistance.by_loss:.3f} N by loss")  # fmt: skip
+            cases = BALANCES if harmonics == 270 else BALANCES[:1]
+            rows = [(*case, 1.0) for case in cases] + [(*STRAIGHT, friction) for friction in (0.0, 0.1, 1.0)]
+            for drum, camber, angle, torque, curvature, friction in rows:
+                tyre = SteadyRolling(Pressing(state, Road(drum)), math.radians(camber), friction, points)
+                motion = RollingMotion(math.radians(angle), curvature, speed=20.0)
+                along = {"torque": torque} if friction else {"travel": resistance.rolling_radius}
+                rolled = tyre.roll(motion, RollingLoads(load=3000.0, **along), harmonics, guess=(0.02, 0.314))
+                words = [f"{value:g}" for value in (drum, camber, angle, torque, curvature, friction, harmonics)]
+                powers = (rolled.friction_power, rolled.loss_power, rolled.lost_power)
+                words += [
+                    *(f"{power:.1f}" for power in powers),
+                    f"{100 * rolled.balance:+.2f}",
+                    f"{rolled.force[0]:.2f}",
+                ]
+                table.writerow(words)
+                print(*words, flush=True)
 
 
 def closed_forms() -> None:
@@ -193,7 +232,7 @@ def pictures() -> None:
 def main() -> None:
     """Run the parts that are named, or the closed forms."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parts = {"closed-forms": closed_forms, "measured": measured, "speed": speed, "pictures": pictures}
+    parts = {"closed-forms": closed_forms, "loss": loss, "measured": measured, "speed": speed, "pictures": pictures}
     for name in parts:
         parser.add_argument(f"--{name}", action="store_true")
     chosen = vars(parser.parse_args())

@@ -25,7 +25,7 @@ from tyrefem.errors import InputError
 from tyrefem.output.folder import results_folder
 
 if TYPE_CHECKING:
-    from tyrefem.mechanics.rolling.roll import RolledStudy
+    from tyrefem.mechanics.rolling.roll import RolledStudy, WheelOnRoad
     from tyrefem.mechanics.rolling.slip_curve import SlipCurve
 
 #: Options with one quantity: name and unit.
@@ -176,22 +176,31 @@ def _words(rolled: RolledStudy) -> str:
     ]
     if f_y and abs(f_y) > 1e-3 * f_z:
         lines.append(f"  pneumatic trail      {state.pneumatic_trail * 1e3:.2f} mm")
+    if state.loss_power:
+        lines.append(
+            f"  rolling resistance   {state.rolling_resistance:.2f} N, energy lost per metre; "
+            f"{state.loss_power:.5g} W in the rubber"
+        )
     lines += [
         f"  rolling radius       {rolled.rolling_radius * 1e3:.2f} mm effective, "
         f"{state.loaded_radius * 1e3:.2f} mm loaded",
         f"  friction             {state.friction_power:.5g} W; {100 * state.sliding_share:.3g} % of the load on points "
         "that slip",
         f"  harmonics            {state.harmonics}, error of the force {rolled.error:.2%}",
-        f"  {MOTION_WORDS[rolled.wheel.pressed.footprint.motion]}",
+        f"  {_motion_words(rolled.wheel)}",
     ]
     return "\n".join(lines)
 
 
-#: What the rolling of this command is.
-MOTION_WORDS = {
-    "linear": "motion               linear about the inflated tyre, without loss: too stiff under large deflections",
-    "large": "motion               footprint in large motion, friction on it in small motion, without loss",
-}
+def _motion_words(wheel: WheelOnRoad) -> str:
+    """What the rolling of this command is."""
+    large, lossy = wheel.pressed.footprint.motion == "large", wheel.rolling.points.lossy
+    if large:
+        words = "footprint in large motion, friction on it in small motion"
+    else:
+        words = "linear about the inflated tyre: too stiff under large deflections"
+    inertia = "with inertia" if wheel.pressed.tyre.angular_speed else "without inertia"
+    return f"motion               {words}; {inertia}, {'with' if lossy else 'without'} loss"
 
 
 def _curve_words(curve: SlipCurve) -> str:
@@ -206,7 +215,7 @@ def _curve_words(curve: SlipCurve) -> str:
         f"{curve.standing.lateral / 1e3:.1f} N/mm sideways",
         f"  greatest force       {peak['force_N']:.0f} N at {where}",
         f"  harmonics            {curve.states[0].harmonics}, error of the force {curve.error:.2%}",
-        f"  {MOTION_WORDS[curve.wheel.pressed.footprint.motion]}",
+        f"  {_motion_words(curve.wheel)}",
         f"  {'angle, deg':>10} {'slip, %':>9} {'F_x, N':>9} {'F_y, N':>9} {'M_z, N m':>9} {'friction, W':>11}",
     ]
     lines += [

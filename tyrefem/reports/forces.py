@@ -42,7 +42,7 @@ def write_files(forces: TyreForces, folder: Path, *, pictures: bool = True) -> N
     study = forces.study
     notes = (
         f"computed by tyrefem from the study {study.name}, not measured",
-        f"pure slip; {MOTIONS[forces.wheel.pressed.footprint.motion]}, without loss and inertia",
+        f"pure slip; {MOTIONS[forces.wheel.pressed.footprint.motion]}, {_dynamics(forces)}",
     )
     with atomic_folder(folder) as place:
         forces.table.to_csv(place / "forces.csv", index=False, float_format="%.9g", lineterminator="\n")
@@ -54,3 +54,9 @@ def write_files(forces: TyreForces, folder: Path, *, pictures: bool = True) -> N
             from tyrefem.reports.figures.style import png
 
             (place / "forces.png").write_bytes(png(forces_figure(forces)))
+
+
+def _dynamics(forces: TyreForces) -> str:
+    if not forces.wheel.pressed.tyre.angular_speed:
+        return "without loss and inertia"
+    return "with inertia and loss" if forces.wheel.rolling.points.lossy else "with inertia, without loss"

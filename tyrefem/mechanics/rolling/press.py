@@ -9,11 +9,15 @@ from tyrefem.mechanics.footprint import press as presses
 from tyrefem.mechanics.rolling.turning import turn
 
 
-def press(study: StudyData, **options: Any) -> presses.Pressed:
+def press(study: StudyData, *, speed: float | None = None, **options: Any) -> presses.Pressed:
     """As `footprint.press.press`; with ``[mechanics] rolling = true`` the tyre turns at the speed of the first phase.
 
     It then has centrifugal growth, inertia and, in linear motion, lag by loss (`turning.turn`). A drive at rest is
     pressed without.
+
+    Parameters
+    ----------
+    speed : m/s, in place of the drive's. options : as of `footprint.press.press`.
 
     Raises
     ------
@@ -22,7 +26,7 @@ def press(study: StudyData, **options: Any) -> presses.Pressed:
     if not study.card.mechanics.rolling:
         return presses.press(study, **options)
 
-    speed = presses.speed_of(study)
+    speed = presses.speed_of(study) if speed is None else speed
     if not speed:
         return presses.press(study, **options)
     order = presses.press_order(study, **options)

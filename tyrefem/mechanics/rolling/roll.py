@@ -13,11 +13,14 @@ from numpy.typing import NDArray
 from tyrefem.brief import Brief
 from tyrefem.errors import InputError
 from tyrefem.mechanics.footprint.contact import LADDER
-from tyrefem.mechanics.footprint.press import Pressed, press
+from tyrefem.mechanics.footprint.press import Pressed
+from tyrefem.mechanics.rolling.press import press
 from tyrefem.mechanics.rolling.pressed_shape import PressedShape
 from tyrefem.mechanics.rolling.rolled import RolledTyre
 from tyrefem.mechanics.rolling.rolling_motion import RollingMotion
 from tyrefem.mechanics.rolling.steady_rolling import FrictionLaw, RollingLoads, SteadyRolling
+from tyrefem.mechanics.rolling.tread_influence import TreadInfluence
+from tyrefem.mechanics.rolling.turning import Turning
 from tyrefem.requirements import Requirements
 
 if TYPE_CHECKING:
@@ -138,6 +141,7 @@ class RolledStudy(Brief):
                 "power_W": self.state.power_by_ring.tolist(),
             },
             "power_balance": self.state.balance,
+            "rolling_resistance_N": self.state.rolling_resistance,
             "harmonics": self.state.harmonics,
             "error": self.error,
             "motion": pressed.footprint.motion,
@@ -165,6 +169,8 @@ def row(wheel: WheelOnRoad, state: RolledTyre) -> dict[str, float]:
         "pneumatic_trail_m": state.pneumatic_trail,
         "sliding_share": state.sliding_share,
         "friction_power_W": state.friction_power,
+        "loss_power_W": state.loss_power,
+        "axle_power_W": state.lost_power,
     }
 
 
@@ -195,6 +201,8 @@ def wheel_on_road(
 ) -> WheelOnRoad:
     """Inflate and press a study's tyre; defaults are values at the start of the drive's first phase.
 
+    With ``[mechanics] rolling = true`` the tyre spins: centrifugal growth, inertia and, in linear motion, loss.
+
     ``pressing``: ``pressure``, Pa, and ``drum_diameter``, m, as in `press`.
 
     Raises
@@ -204,14 +212,17 @@ def wheel_on_road(
     NEEDS.check(study)
     if speed is not None and not speed > 0:
         raise InputError(f"must be more than 0 m/s, not {speed:g} m/s", field="speed")
-    pressed = press(study, load=load, deflection=deflection, motion=motion, **pressing)
+    pressed = press(study, speed=speed, load=load, deflection=deflection, motion=motion, **pressing)
     phase = study.card.drive.phases[0]
     if load is None and deflection is None:
         load = None if phase.load is None else phase.load.start
     deflection = pressed.footprint.deflection if load is None else None
     shape = PressedShape(pressed.footprint) if pressed.balanced else None
     law = tread_friction(pressed) if friction is None else friction
-    rolling = SteadyRolling(pressed.pressing, camber, law, shape=shape)
+    turning = pressed.turning
+    lossy = turning.lossy if isinstance(turning, Turning) else None
+    influence = None if lossy is None else TreadInfluence(lossy.tread)
+    rolling = SteadyRolling(pressed.pressing, camber, law, influence, shape)
     return WheelOnRoad(pressed, rolling, load, deflection, speed or pressed.speed or 1.0)
 
 

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
 from tyrefem.mechanics.footprint.footprint import BEYOND
+from tyrefem.mechanics.rolling.body_loss import BodyLoss
 from tyrefem.mechanics.rolling.friction import OPEN, SLIP, FrictionForces
 from tyrefem.mechanics.rolling.rolling_grid import RollingGrid
 from tyrefem.mechanics.rolling.rolling_motion import RollingMotion
@@ -187,6 +188,17 @@ class RolledTyre(Brief):
         """Power that friction turns into heat, W."""
         return float(self.power_map.sum())
 
+    @functools.cached_property
+    def body_loss(self) -> BodyLoss:
+        """Loss of the rubber; none where the stiffness has none."""
+        vectors = self._map(self._vectors)
+        return BodyLoss(self.grid, np.asarray(np.einsum("jpx,jcx->jpc", vectors, self.grid.wheel_axes)))
+
+    @property
+    def loss_power(self) -> float:
+        """Power that the rubber turns into heat, W."""
+        return self.body_loss.energy * self.spin / (2 * np.pi)
+
     @property
     def lost_power(self) -> float:
         """Power of the axle, W: torque times spin, less what the road takes away: -F . velocity of the road."""
@@ -196,6 +208,12 @@ class RolledTyre(Brief):
         return self.torque * self.spin + taken
 
     @property
+    def rolling_resistance(self) -> float:
+        """Energy lost per metre travelled, N: power of the axle over speed, with that of friction."""
+        return self.lost_power / self.motion.speed
+
+    @property
     def balance(self) -> float:
-        """What the axle puts in less what friction takes out, over the latter."""
-        return (self.lost_power - self.friction_power) / self.friction_power if self.friction_power else 0.0
+        """What the axle puts in less what friction and rubber take out, over the latter."""
+        taken = self.friction_power + self.loss_power
+        return (self.lost_power - taken) / taken if taken else 0.0

@@ -66,6 +66,7 @@ class SteadyRolling(Brief):
     pressing : the inflated tyre on its road, without camber if it is a half section.
     camber : rad; positive: the side z > 0 moves down.
     friction : coefficient, or its law of sliding speed and pressure.
+    influence : points of the whole tread, with loss where it counts; None: those of ``pressing``, without.
     shape : of the tyre pressed in large motion, from which friction moves it; None: of the inflated tyre.
     """
 
@@ -164,7 +165,7 @@ class SteadyRolling(Brief):
         side = min(math.ceil(1.1 * half_angle / math.pi * harmonics) + 1, harmonics - 1)
         grid = RollingGrid(self.points, self.road, harmonics, -side, side, self.shape)
         gaps, normals = grid.gaps(np.zeros((grid.n_points, 3)), self.reach - deflection)
-        _, closed = contact_forces(grid.normal_compliance(normals), gaps)
+        _, closed = contact_forces(grid.normal_compliance(normals), gaps, symmetric=not self.points.lossy)
         if not closed.any():
             raise InputError("the tyre does not touch the road", field="deflection")
         return grid.around(closed, ANGLES_BEYOND)

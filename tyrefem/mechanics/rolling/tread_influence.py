@@ -79,6 +79,11 @@ class TreadInfluence(Brief):
     _solved: Cache[Array] = field(default_factory=lambda: Cache(size=128), init=False, repr=False)
     _kernels: dict[int, Array] = field(default_factory=dict, init=False, repr=False)
 
+    @property
+    def lossy(self) -> bool:
+        """True if the stiffness is complex: the tyre has loss."""
+        return isinstance(self.tread.harmonics, LossyHarmonics)
+
     @functools.cached_property
     def antisymmetric(self) -> AntisymmetricHarmonics:
         """The antisymmetric motions of a half section."""
