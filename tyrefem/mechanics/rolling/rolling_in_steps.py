@@ -173,7 +173,7 @@ class _Step:
         """About that of a node, N/m: it leads the search only."""
         return float(1 / np.diag(self.compliance).mean())
 
-    def _residual(self, forces: Array) -> tuple[Array, Array, Array, Array]:
+    def _residual(self, forces: Array) -> tuple[Array, Flags, Flags, Array]:
         """(k, 3) forces less those that the road would give, flags of touching and slipping nodes, slips (k, 2)."""
         moved = self._moved(forces)
         normal = forces[:, 0] - self._stiffness * moved[:, 0]
@@ -188,7 +188,7 @@ class _Step:
         held = touches & self.closed
         share = np.minimum(1.0, limit / np.maximum(length, 1e-300))
         road[held, 1:] = share[held, None] * pull[held]
-        return forces - road, touches, sliding, slips
+        return forces - road, touches, sliding, np.asarray(slips)
 
     def solve(self, forces: Array) -> tuple[Array, Array]:
         """Forces (k, 3) and slips (k, 2) of the step, by Newton's method from similar forces."""
