@@ -7,7 +7,7 @@ import pytest
 
 from tyrefem.errors import InputError
 from tyrefem.mechanics.rolling.contact_body import ContactBody
-from tyrefem.mechanics.rolling.example_bodies import bristles, half_plane, string
+from tyrefem.mechanics.rolling.example_bodies import beam, bristles, half_plane, string
 from tyrefem.mechanics.rolling.friction import OPEN, SLIP, STICK, Control, RollingContact
 
 pytestmark = pytest.mark.fast
@@ -128,6 +128,20 @@ def test_string_on_an_elastic_bed() -> None:
     side = -problem.solve().forces[:, 2]
     assert side.sum() / angle == pytest.approx(2 * bed * (sigma + A) ** 2, rel=0.003)
     assert -(x * side).sum() / angle == pytest.approx(2 * bed * A * (sigma * (sigma + A) + A**2 / 3), rel=0.005)
+
+
+def test_beam_on_an_elastic_bed() -> None:
+    """With 1/b in place of sigma the string's cornering stiffness, 2 c (a + 1/b)^2; aligning stiffness
+    c (2 a^3/3 + 2 a^2/b + 2 a/b^2 + 1/b^3). The slope is continuous at the front, and no couple acts there."""
+    count, bending, bed, angle = 601, 0.05, 3.0, 1e-3
+    step, length = 3.0 * A / count, (4 * bending / bed) ** 0.25
+    x = positions(count, step)
+    gaps = np.where(np.abs(x) < A, -1.0, 1.0)
+    body = beam(count, step, bending, bed, 1e-3)
+    side = -RollingContact(body, gaps, rigid(count, step, angle, 1), np.full(count, 1e9)).solve().forces[:, 2]
+    assert side.sum() / angle == pytest.approx(2 * bed * (A + length) ** 2, rel=0.004)
+    aligning = bed * (2 * A**3 / 3 + 2 * A**2 * length + 2 * A * length**2 + length**3)
+    assert -(x * side).sum() / angle == pytest.approx(aligning, rel=0.01)
 
 
 def test_without_friction_nothing_pulls() -> None:

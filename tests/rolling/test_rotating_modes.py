@@ -6,38 +6,28 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-import skfem
 
 import tyrefem as tf
 from tyrefem.errors import InputError
-from tyrefem.mechanics.footprint.example_tyre import PlainTyre, stress_free
+from tyrefem.mechanics.footprint.example_tyre import PlainTyre
 from tyrefem.mechanics.footprint.harmonics import Harmonics
 from tyrefem.mechanics.footprint.natural_frequencies import natural_frequencies
 from tyrefem.mechanics.footprint.vibration import Vibration
+from tyrefem.mechanics.rolling.example_rings import ElasticRing
 from tyrefem.mechanics.rolling.rotating_modes import RotatingWaves, rotating_frequencies
 from tyrefem.mechanics.rolling.standing_waves import SteadyWaves
-
-SHEAR, BULK, DENSITY = 1e8, 1e11, 1200.0
-YOUNG = 9 * BULK * SHEAR / (3 * BULK + SHEAR)
 
 
 @pytest.mark.parametrize("n", [2, 3])
 def test_splitting_of_a_rotating_ring(n: int) -> None:
     """w = 2 n W/(n^2 + 1) +- sqrt(w_0^2 + (n (n^2 - 1) W/(n^2 + 1))^2), in the ring's frame (Bryan 1890)."""
-    radius, h, spin = 1.0, 0.02, 3.0
-    mesh = skfem.MeshQuad.init_tensor(np.linspace(radius - h / 2, radius + h / 2, 3), np.linspace(-h / 2, h / 2, 3))
-    state = stress_free(mesh, SHEAR, BULK, fixed=())
-    stress = np.zeros_like(state.stress)
     # The ring carries its centrifugal load as hoop stress rho (W R)^2.
-    stress[2] = DENSITY * (spin * radius) ** 2
-    vibration = Vibration(Harmonics(replace(state, stress=stress)), np.full(state.bulk.shape, DENSITY))
-    waves = [w for w, shape, _ in RotatingWaves(vibration, spin).frequencies(n, 4) if np.abs(shape).argmax() % 3 == 0]
-    still = n**2 * (n**2 - 1) ** 2 / (n**2 + 1) * YOUNG * h**2 / 12 / (DENSITY * radius**4)
-    mean, half = 2 * n * spin / (n**2 + 1), np.sqrt(still + (n * (n**2 - 1) * spin / (n**2 + 1)) ** 2)
-    backward, forward = min(w for w in waves if w > 0), max(w for w in waves if w < 0)
-    assert backward == pytest.approx(mean + half, rel=2e-3)
-    assert forward == pytest.approx(mean - half, rel=4e-3)
-    assert backward + forward == pytest.approx(2 * mean, rel=2e-3)
+    spin, ring = 3.0, ElasticRing(0.02)
+    ring = replace(ring, tension=ring.line_density * (spin * ring.radius) ** 2)
+    (backward, forward), exact = ring.splitting(n, spin), ring.rotating(n, spin)
+    assert backward == pytest.approx(exact[0], rel=2e-3)
+    assert forward == pytest.approx(exact[1], rel=4e-3)
+    assert backward + forward == pytest.approx(4 * n * spin / (n**2 + 1), rel=2e-3)
 
 
 def test_at_rest_both_directions_are_the_standing_modes() -> None:

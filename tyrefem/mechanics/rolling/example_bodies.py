@@ -1,4 +1,4 @@
-"""Bodies whose rolling contact is known in closed form: a half plane, bristles, a string on an elastic bed."""
+"""Bodies whose rolling contact is known in closed form: a half plane, bristles, string and beam on an elastic bed."""
 
 from __future__ import annotations
 
@@ -54,6 +54,17 @@ def string(count: int, step: float, tension: float, bed: float, normal: float) -
     return ContactBody(
         _uncoupled(normal * np.eye(count), np.exp(-distance / length) / (2 * bed * length)), line_upstream(count)
     )
+
+
+def beam(count: int, step: float, bending: float, bed: float, normal: float) -> ContactBody:
+    """An endless beam of ``bending`` stiffness E I (N m2) on an elastic ``bed`` (N/m2), else as `string`.
+
+    A force F moves it by F b exp(-b|x|) (cos b|x| + sin b|x|)/(2 bed), b^4 = bed/(4 bending).
+    """
+    inverse = (bed / (4 * bending)) ** 0.25
+    turned = inverse * step * np.abs(np.subtract.outer(np.arange(count), np.arange(count)))
+    kernel = inverse * np.exp(-turned) * (np.cos(turned) + np.sin(turned)) / (2 * bed)
+    return ContactBody(_uncoupled(normal * np.eye(count), kernel), line_upstream(count))
 
 
 def _uncoupled(normal: Array, tangential: Array) -> Array:
