@@ -11,6 +11,8 @@ from tyrefem.effects.combined import Acting
 from tyrefem.simulation.rolling_tyre import RollingTyre
 
 SHAPE = catalogue()["heat-shape"]
+#: Choices of effects that name no variants.
+PLACES = {"missing-heat": {"station": "20 mm", "width": "9 mm"}, "heat-shape": {"half_waves": 1}}
 
 
 @pytest.fixture(scope="module")
@@ -52,3 +54,24 @@ def test_every_factor_of_place_is_the_same_at_all_times_and_temperatures(tyre: R
         entry = effect.check({"half_waves": 2, "log_factor": 0.3})
         first, last = (entry.heat_factor(tyre, "any", points, t, T) for t, T in ((0.0, cold), (500.0, hot)))
         np.testing.assert_array_equal(first, last)
+
+
+def test_heat_said_to_be_without_temperature_is_the_same_cold_and_hot(tyre: RollingTyre) -> None:
+    points = points_of(tyre)
+    cold, hot = (np.full(points.shape[1], value) for value in (10.0, 120.0))
+    zone, compared, t = tyre.schedule.zones[0].name, 0, 300.0
+    for effect in catalogue().values():
+        acts = effect.overrides("heat_addend") or effect.overrides("heat_factor")
+        if not acts or effect.heat_of_temperature or effect.refusal(tyre.study):
+            continue
+        choice = next(iter(effect.variants(tyre.study)), {}) or PLACES.get(effect.name, {})
+        sizes = {
+            name: prior.scale if prior.unit == "1" else f"{prior.scale!r} {prior.unit}"
+            for name, prior in ((each.name, each.prior) for each in effect.parameters())
+        }
+        acting = effect.check({**choice, **sizes})
+        for port in ("heat_addend", "heat_factor"):
+            first, last = (getattr(acting, port)(tyre, zone, points, t, T) for T in (cold, hot))
+            np.testing.assert_array_equal(first, last)
+        compared += 1
+    assert compared >= 6

@@ -11,6 +11,7 @@ from tyrefem.reduced.answers import reduced_answers
 from tyrefem.reduced.balance import reduced_balance
 from tyrefem.reduced.batch import Batch, steady
 from tyrefem.reduced.integration import integrate
+from tyrefem.reduced.sampled_source import SampledHeat
 from tyrefem.reduced.surrogate import surrogate, temperature_error
 from tyrefem.simulation.rolling_tyre import RollingTyre
 from tyrefem.simulation.run import run
@@ -93,3 +94,27 @@ def test_tan_delta_over_frequency_is_met() -> None:
     fresh = passenger.replace({"drive.speed": "93 km/h"})
     reduced, full = trained.answers([fresh])[0].answers, answers(run(fresh))
     assert temperature_error(reduced, full) < 0.02
+
+
+def test_heat_from_tables_changed_by_effects_is_that_of_each_variant(plain: Study) -> None:
+    entries = [
+        [],
+        [{"name": "heat-shape", "half_waves": 2, "log_factor": 0.3}, {"name": "loss-speed-exponent", "exponent": 0.4}],
+        [
+            {"name": "missing-heat", "station": "20 mm", "width": "9 mm", "heat": "50 kW/m**3"},
+            {"name": "loss-temperature-law", "rate": "0.005 1/delta_degC"},
+            {"name": "pressure-rise", "rise": 0.15},
+        ],
+    ]
+    base = RollingTyre(plain)
+    tyres = [base, *(RollingTyre(plain.replace({"effects": effects}), base) for effects in entries[1:])]
+    trained = surrogate(plan_of(plain, SPEEDS, sample="sobol", count=12), tolerance=0.02)
+    balances = [reduced_balance(trained.model, RollingTyre(tyre.study, trained.model.base)) for tyre in tyres]
+    a = np.stack([np.stack([balance.start[: trained.model.size]] * 2, axis=1) for balance in balances])
+    a[:, 0, 1] *= 1.7
+    times = (30.0, 150.0)
+    for heat in (SampledHeat(balances)(times, a), SampledHeat(balances)(times, a)):
+        for row, balance in enumerate(balances):
+            alone = np.column_stack([balance.source(t, a[row, :, column]) for column, t in enumerate(times)])
+            np.testing.assert_allclose(heat[row], alone, rtol=1e-5, atol=1e-6 * np.abs(alone).max())
+    assert np.abs(heat[1] / heat[0] - 1).max() > 0.1

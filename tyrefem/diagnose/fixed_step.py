@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
+from tyrefem.cache import Cache, Content
 from tyrefem.conduction.fixed_steps import fixed_step_solution
 from tyrefem.conduction.points import located
 from tyrefem.conduction.sensitivity import Tangents, stage_times
@@ -31,6 +32,8 @@ Array = NDArray[np.float64]
 
 #: A jump nearer than this to another is at the same time, s.
 LEAST_STEP = 1.0
+#: Places of sensors in a mesh, by section, size of the elements and true places.
+_POINTS: Cache[Array] = Cache(size=256)
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,10 +97,13 @@ class FixedStepRun:
 
 def sensor_points(study: StudyData, tyre: RollingTyre) -> Array:
     """(n_sensors, 2) m: places of a study's sensors in a tyre's mesh, kept within the straight-sided elements."""
-    places = true_places(study)
-    section = tyre.study.section
-    s, depth = section.locate(np.array(list(places.values())).reshape(-1, 2))
-    return inside_mesh(section, tyre.mesh.size, s, depth)
+    places = np.array(list(true_places(study).values())).reshape(-1, 2)
+    section, size = tyre.study.section, tyre.mesh.size
+
+    def compute() -> Array:
+        return inside_mesh(section, size, *section.locate(places))
+
+    return _POINTS.get((section, size, Content.of(places)), compute)
 
 
 def read(study: StudyData, grid: Array, at_sensors: Array | None, lumped: dict[str, Array]) -> dict[str, Array]:
@@ -203,8 +209,6 @@ class ReadingSensitivities:
                 slopes[sensor] = base.dense(column.T)
         if len(slopes) < len(sensors):
             at_sensors = base.dense(np.moveaxis(tangents.at(base.sensor_points), 0, -1))
-            each = [recorded_change(base.study, base.grid, at_sensors[:, :, k]) for k in range(len(self.columns))]
-            slopes |= {
-                name: np.column_stack([changes[name] for changes in each]) for name in sensors if name not in slopes
-            }
+            changes = recorded_change(base.study, base.grid, at_sensors)
+            slopes |= {name: changes[name] for name in sensors if name not in slopes}
         return slopes

@@ -105,15 +105,16 @@ def catalogue() -> dict[str, type[Effect]]:
     True
     """
     modules = _modules(os.environ.get("TYREFEM_EFFECTS", ""))
-    classes = [Effect]
-    for cls in classes:
-        classes += cls.__subclasses__()
-    return dict(_by_name(modules, tuple(classes)))
+    return dict(_by_name(modules, Effect.made))
 
 
 @functools.lru_cache(maxsize=1)
-def _by_name(modules: frozenset[str], classes: tuple[type[Effect], ...]) -> dict[str, type[Effect]]:
+def _by_name(modules: frozenset[str], made: int) -> dict[str, type[Effect]]:
+    """The effects of some modules; ``made``: number of classes of effects so far, which asks for a new search."""
     effects: dict[str, type[Effect]] = {}
+    classes = [Effect]
+    for cls in classes:
+        classes += cls.__subclasses__()
     for cls in classes:
         if not cls.name or cls.__module__ not in modules:
             continue

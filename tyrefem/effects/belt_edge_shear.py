@@ -29,6 +29,7 @@ class BeltEdgeShear(Effect):
         "estimate, as is the extent: 2e4 J/m3 per revolution = pi G gamma^2 tan(delta) with G = 2.3 MPa, "
         "tan(delta) = 0.1, interply shear strain gamma = 0.17 (textbooks: 0.1 to 0.2)"
     )
+    heat_of_temperature: ClassVar[bool] = False
     signature: ClassVar[Signature] = Signature(signs={"shoulder-inner": 1, "shoulder-outer": 1})
 
     #: Extent (standard deviations) along the meridian and across the plies, m; centre over the shoulder's station.

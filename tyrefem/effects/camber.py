@@ -23,6 +23,7 @@ class Camber(Effect):
         "estimate: each side deflects by D + z_s tan(angle), strain energy goes with its square; alignment is good "
         "to a degree or two"
     )
+    heat_of_temperature: ClassVar[bool] = False
     free_rolling: ClassVar[bool] = False
     signature: ClassVar[Signature] = Signature(
         changes={"mesh.section": "full", "sensors.shoulder-left": {"s": "-2.00 in", "depth": "0.07 in"}},

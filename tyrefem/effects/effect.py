@@ -105,13 +105,16 @@ class Effect(Card):
 
     @classmethod
     def __pydantic_init_subclass__(cls, **options: Any) -> None:
-        """Refuse a class that lacks a required attribute of an effect."""
+        """Count the class, and refuse it if it lacks a required attribute of an effect."""
+        Effect.made += 1
         if cls.name:
             complaint = _complaint(cls)
             if complaint:
                 raise InputError(f"effect '{cls.name}': {complaint}")
 
     kind: ClassVar[str] = "effect"
+    #: Number of subclasses that were ever made.
+    made: ClassVar[int] = 0
     #: Name in study files; one sentence; reference; family: heat, conduction, boundary...
     name: ClassVar[str] = ""
     sentence: ClassVar[str] = ""
@@ -132,6 +135,8 @@ class Effect(Card):
     of_drive: ClassVar[bool] = False
     #: True if its factor on the heat depends on place only, not on time or temperature: it is then kept by place.
     of_place: ClassVar[bool] = False
+    #: False if its addend to the heat or factor on it is the same at all temperatures: it is then kept by time.
+    heat_of_temperature: ClassVar[bool] = True
     #: Times within a phase at which a port jumps, s: simulations with fixed steps end a step there.
     jumps: ClassVar[tuple[float, ...]] = ()
     #: States of the effect during a run, by name; its ports read them by ``tyre.state(self, name, t)``.

@@ -26,6 +26,7 @@ class HeatShape(Effect):
     of_place: ClassVar[bool] = True
     sentence: ClassVar[str] = "The strain energy differs along the meridian, by a smooth factor."
     source: ClassVar[str] = "none: what a diagnosis allows for where the strain law may be wrong"
+    heat_of_temperature: ClassVar[bool] = False
 
     half_waves: Annotated[
         int, Field(description="half waves between crown and bead; 0: the same everywhere", ge=0, le=20, examples=[2])

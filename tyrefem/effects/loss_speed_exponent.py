@@ -20,6 +20,7 @@ class LossSpeedExponent(Effect):
         "estimate: tan(delta) of filled rubber above its glass transition rises by 10 to 50 % per decade of "
         "frequency (exponent 0.04 to 0.18)"
     )
+    heat_of_temperature: ClassVar[bool] = False
     signature: ClassVar[Signature] = Signature(
         changes={"drive.phases.rolling.speed": "30 m/s"},
         words="at 30 m/s",

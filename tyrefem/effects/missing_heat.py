@@ -26,6 +26,7 @@ class MissingHeat(Effect):
     calibration: ClassVar[bool] = True
     sentence: ClassVar[str] = "Heat of unknown origin about one station of the meridian, in W/m3, while the tyre rolls."
     source: ClassVar[str] = "none: what a diagnosis finds when nothing in the catalogue explains a gap"
+    heat_of_temperature: ClassVar[bool] = False
 
     station: Annotated[
         float, Unit("m", ge=0), Field(description="distance from the crown on the meridian", examples=["60 mm"])

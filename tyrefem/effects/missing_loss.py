@@ -22,6 +22,7 @@ class MissingLoss(Effect):
     calibration: ClassVar[bool] = True
     sentence: ClassVar[str] = "Heat of unknown origin in proportion to the model's own hysteresis."
     source: ClassVar[str] = "none: what a diagnosis tries when nothing in the catalogue explains a gap"
+    heat_of_temperature: ClassVar[bool] = False
 
     region: Annotated[
         str | None, Field(description="the only region whose loss changes; default: all", examples=["tread"])

@@ -20,6 +20,7 @@ class PressureLoss(Effect):
         "estimate: a slow leak loses up to 1 bar in an hour (28 Pa/s); strain energy goes with the square of the "
         "deflection"
     )
+    heat_of_temperature: ClassVar[bool] = False
     signature: ClassVar[Signature] = Signature(signs={"crown-inner": 1, "sidewall-inner": 1})
 
     rate: Annotated[

@@ -23,6 +23,7 @@ class PressureRise(Effect):
         "estimate: at constant volume 45 K of warming raise the absolute pressure by 15 %; strain energy goes with "
         "the square of the deflection"
     )
+    heat_of_temperature: ClassVar[bool] = False
     signature: ClassVar[Signature] = Signature(signs={"crown-inner": -1, "sidewall-inner": -1})
 
     rise: Annotated[float, Prior("1", "rise of the gauge pressure over the drive's, in the end", 0.15, 0.0, 0.8)] = 0.0

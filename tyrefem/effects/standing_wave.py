@@ -23,6 +23,7 @@ class StandingWave(Effect):
         "estimate: waves run at sqrt(p r / (rho h)), 90 m/s in the 22x5.5 at 83 psi, 50 to 60 m/s in a passenger "
         "tyre; three times the heat at 1.5 times the critical speed"
     )
+    heat_of_temperature: ClassVar[bool] = False
     signature: ClassVar[Signature] = Signature(
         changes={"drive.phases.rolling.speed": "55 m/s"},
         words="at 55 m/s",

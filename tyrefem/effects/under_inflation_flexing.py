@@ -22,6 +22,7 @@ class UnderInflationFlexing(Effect):
         "Clark & Dodge 1980, summary: a seriously under-inflated tyre warms more than the theory says; estimate: "
         "linear in the excess deflection, about twice the heat at twice the rated deflection"
     )
+    heat_of_temperature: ClassVar[bool] = False
     signature: ClassVar[Signature] = Signature(
         changes={"drive.load": "4000 lbf"}, words="at 4000 lbf", signs={"shoulder-inner": 1, "sidewall-inner": 1}
     )

@@ -34,11 +34,13 @@ def check_effects(study: CheckedStudy) -> None:
     ------
     InputError : names the effect and what is wrong with it.
     """
-    effects = study.card.effects
-    for number, effect in enumerate(effects):
+    before: dict[str, list[Effect]] = {}
+    for effect in study.card.effects:
         problem = effect.problem(study)
-        if problem is None and any(_same(effect, other) for other in effects[:number]):
+        of_name = before.setdefault(effect.name, [])
+        if problem is None and any(_same(effect, other) for other in of_name):
             problem = "is given twice"
+        of_name.append(effect)
         if problem is not None:
             raise InputError(problem, field=f"effects.{effect.name}", file=study.file)
     excluded = study.card.diagnosis.exclude
@@ -49,8 +51,8 @@ def check_effects(study: CheckedStudy) -> None:
 
 
 def _same(effect: Effect, other: Effect) -> bool:
-    """Whether two effects are the same, in all runs or in the same run."""
-    if effect.name != other.name or effect.choice != other.choice:
+    """Whether two effects of a name are the same, in all runs or in the same run."""
+    if effect.choice != other.choice:
         return False
     if effect.runs is None or other.runs is None:
         return effect.runs is other.runs

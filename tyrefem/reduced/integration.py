@@ -64,7 +64,13 @@ class _PhaseIntegration:
         self.frozen = moment
         A = K + np.tensordot(moment.films, self.batch.balances[0].stack, axes=1)
         self.decay, self.into = np.empty(A.shape[:2]), np.empty_like(A)
+        # Variants that differ in their heat sources only share the eigenvectors.
+        solved: dict[tuple[bytes, bytes], int] = {}
         for b in range(len(A)):
+            first = solved.setdefault((A[b].tobytes(), self.M[b].tobytes()), b)
+            if first < b:
+                self.decay[b], self.into[b] = self.decay[first], self.into[first]
+                continue
             decay, back, failed = dsygvd(A[b], self.M[b])
             if failed:
                 raise np.linalg.LinAlgError("heat capacity that is not positive definite")

@@ -1,4 +1,4 @@
-"""Heat sources of many variants at the sample nodes: strain energy x revolutions x a table of tan delta."""
+"""Heat sources of many variants at the sample nodes: strain energy x revolutions x a table of tan delta, effects."""
 
 from __future__ import annotations
 
@@ -8,40 +8,50 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.reduced.balance import ReducedBalance
-from tyrefem.simulation.heat_source import HeatSource
+from tyrefem.reduced.heat_change import HeatChange
 
 Array = NDArray[np.float64]
 #: Range of the table of tan delta, degC, and its spacing, K.
 COLD, HOT, FINE = -60.0, 400.0, 0.25
 
 
-def has_plain_sources(balance: ReducedBalance) -> bool:
-    """Do all heat sources come from the strain cycle alone, with a tan delta independent of frequency?"""
-    return all(type(source) is HeatSource and source.over_frequency is None for source in balance.tyre.sources.values())
+def has_tabulated_loss(balance: ReducedBalance) -> bool:
+    """Is tan delta independent of frequency in all zones?"""
+    return all(source.over_frequency is None for source in balance.tyre.hysteresis.values())
 
 
 class SampledHeat:
     """Heat sources at the sample nodes of variants whose drives have the same phases and load-case times.
 
-    A variant is evaluated alone if effects act on its heat or its tan delta depends on frequency.
+    The strain cycle's heat comes from tables, for all variants together; effects then change it: (base + addends) x
+    factors. A variant is evaluated alone if its tan delta depends on frequency.
     """
 
     def __init__(self, balances: Sequence[ReducedBalance]) -> None:
         self.balances = balances
-        self.rows = [row for row, balance in enumerate(balances) if has_plain_sources(balance)]
+        self.rows = [row for row, balance in enumerate(balances) if has_tabulated_loss(balance)]
         self.others = [row for row in range(len(balances)) if row not in self.rows]
-        self.tabulated = TabulatedHeat([balances[row] for row in self.rows]) if self.rows else None
+        tabulated = [balances[row] for row in self.rows]
+        self.tabulated = TabulatedHeat(tabulated) if tabulated else None
+        changes = ((place, HeatChange(balance)) for place, balance in enumerate(tabulated))
+        self.changes = [(place, change) for place, change in changes if change.acts]
 
     def __call__(self, times: Sequence[float], a: Array) -> Array:
         """(B, n_samples, k) sources of modes a (B, m, k) at times of one phase, seen from inside it."""
         if self.tabulated is not None and not self.others:
-            return self.tabulated(times, a)
+            return self._of_tables(self.tabulated, times, a)
         heat = np.empty((len(a), len(self.balances[0].model.at_samples), a.shape[2]))
         if self.tabulated is not None:
-            heat[self.rows] = self.tabulated(times, a[self.rows])
+            heat[self.rows] = self._of_tables(self.tabulated, times, a[self.rows])
         for row in self.others:
             for column, t in enumerate(times):
                 heat[row, :, column] = self.balances[row].source(t, a[row, :, column])
+        return heat
+
+    def _of_tables(self, tabulated: TabulatedHeat, times: Sequence[float], a: Array) -> Array:
+        heat = tabulated(times, a)
+        for place, change in self.changes:
+            change.apply(heat[place], times, a[place])
         return heat
 
 

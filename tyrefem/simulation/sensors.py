@@ -21,7 +21,7 @@ def lagged(times: Array, temperatures: Array, lag: float) -> Array:
 
     Parameters
     ----------
-    times : (n,) s; temperatures : (n,) degC; lag : time constant, s.
+    times : (n,) s; temperatures : (n,) or (n, k) degC; lag : time constant, s.
 
     >>> t = np.linspace(0.0, 10.0, 11)
     >>> bool(abs(lagged(t, 2.0 * t, 1.0)[-1] - (20.0 - 2.0 * (1 - np.exp(-10.0)))) < 1e-12)
@@ -29,12 +29,13 @@ def lagged(times: Array, temperatures: Array, lag: float) -> Array:
     """
     if lag <= 0 or len(times) < 2:
         return np.array(temperatures, dtype=float)
-    steps = np.diff(times)
-    behind = lag * np.diff(temperatures) / steps
+    temperatures = np.asarray(temperatures, dtype=float)
+    steps = np.diff(times).reshape(-1, *(1,) * (temperatures.ndim - 1))
+    behind = lag * np.diff(temperatures, axis=0) / steps
     before, after, decay = temperatures[:-1] - behind, temperatures[1:] - behind, np.exp(-steps / lag)
     # Particular solution T - lag * slope, plus what is left of the old offset: a recursion, solved as a band of two.
     bands = np.ones((2, len(times)))
-    bands[1, :-1] = -decay
+    bands[1, :-1] = -decay.reshape(-1)
     given = np.concatenate([temperatures[:1], after - before * decay])
     return np.asarray(solve_banded((1, 0), bands, given, check_finite=False))
 
@@ -60,7 +61,7 @@ def true_places(study: StudyData) -> dict[str, tuple[float, float]]:
 
 
 def recorded(study: StudyData, times: Array, temperatures: ArrayLike) -> dict[str, Array]:
-    """Recorded readings for temperatures (n_times, n_sensors) at the sensors, degC, in the study's order.
+    """Recorded readings for temperatures (n_times, n_sensors, ...) at the sensors, degC, in the study's order.
 
     Lag first, then the effects of measurement: a further lag, swapped channels, offset, offset of the logger's clock.
     """
@@ -77,12 +78,19 @@ def recorded(study: StudyData, times: Array, temperatures: ArrayLike) -> dict[st
         for effect in effects:
             channel = effect.channel(channel)
         column = read[channel] + sum(effect.offset(name) for effect in effects)
-        readings[name] = np.interp(times + late, times, column) if late else column
+        readings[name] = _later(times, column, late) if late else column
     return readings
 
 
+def _later(times: Array, readings: Array, late: float) -> Array:
+    """Readings (n, ...) at ``late`` (s) after each of the times; constant beyond the last time."""
+    if readings.ndim == 1:
+        return np.interp(times + late, times, readings)
+    return np.column_stack([np.interp(times + late, times, column) for column in readings.T])
+
+
 def recorded_change(study: StudyData, times: Array, temperatures: ArrayLike) -> dict[str, Array]:
-    """Change of the recorded readings, K, for a change of the sensors' temperatures (n_times, n_sensors), K.
+    """Change of the recorded readings, K, for a change of the sensors' temperatures (n_times, n_sensors, ...), K.
 
     `recorded` is linear, except for the constant offsets of channels.
     """

@@ -22,7 +22,8 @@ from tyrefem.mechanics.cycle_schedule import CycleSchedule, cycle_schedule, rate
 from tyrefem.simulation.effect_states import EffectStates
 
 GAS, RIM = "contained-air", "rim"
-
+#: Places of sets of points, by section: tyres of one section are asked for the same points.
+_PLACES: Cache[tuple[NDArray[np.float64], NDArray[np.float64]]] = Cache(size=128)
 
 Array = NDArray[np.float64]
 
@@ -74,17 +75,13 @@ class Surroundings:
         return {zone.name: str(zone.region) for zone in self.schedule.zones}
 
     def places(self, x: Array) -> tuple[Array, Array]:
-        """|s| along the meridian and depth of points x (2, n), m; cached for the 32 latest sets of points."""
+        """|s| along the meridian and depth of points x (2, n), m; cached for the latest sets of points."""
 
         def compute() -> tuple[Array, Array]:
             s, depth = self.study.section.locate(np.asarray(x).T)
             return np.abs(s), depth
 
-        return self._places.get(Content.of(x), compute)
-
-    @functools.cached_property
-    def _places(self) -> Cache[tuple[Array, Array]]:
-        return Cache(size=32)
+        return _PLACES.get((self.study.section, Content.of(x)), compute)
 
     def ambient(self, t: float) -> float:
         """Ambient temperature, degC."""
