@@ -16,24 +16,19 @@ Friction = Annotated[float, Unit("1", ge=0, le=5)]
 
 
 class SlidingLaw(Law):
-    """Friction heat mu p v_s of a contact, W/m2, in phases of the drive with slip; zero in other phases.
+    """Friction heat of a contact, W/m2, in phases of the drive with slip.
 
-    The default of ``pressure`` is the load over the modelled footprint, so that the total friction heat is mu F_z v_s.
     The road's values are given here, or those of the road law, or its defaults (`HalfSpace`). Friction decreases where
     it would heat the contact's exit edge above ``decomposition_temperature`` (Roberts, eq 13). 350 degC is an estimate,
     as are all defaults here.
     """
 
     side: ClassVar[str] = "sliding"
-    pressure: Annotated[float, Unit("Pa", gt=0)] | None = None
+    #: True: steady rolling with friction gives the heat, ring by ring, in every phase that moves.
+    rolls: ClassVar[bool] = False
     road_conductivity: Annotated[float, Unit("W/m/K", gt=0), ROAD_CONDUCTIVITY] | None = None
     road_heat_capacity: Annotated[float, Unit("J/m**3/K", gt=0), SOLID_CAPACITY] | None = None
     decomposition_temperature: Temperature = 350.0
-
-    @abstractmethod
-    def friction(self, sliding_speed: float, rolling_speed: float) -> float:
-        """Friction force over load, without the limit of decomposition; speeds of the tread over the road and through
-        the footprint, m/s."""
 
     def road_effusivity(self, road: RoadLaw) -> float:
         """b of the road, J/m2/K/s^0.5: given here, or that of the road law, or its default."""
@@ -43,7 +38,21 @@ class SlidingLaw(Law):
         )
 
 
-class ConstantFriction(SlidingLaw):
+class UniformSliding(SlidingLaw):
+    """Friction heat mu p v_s of the whole footprint at one sliding speed v_s; zero in phases without slip.
+
+    The default of ``pressure`` is the load over the modelled footprint, so that the total friction heat is mu F_z v_s.
+    """
+
+    pressure: Annotated[float, Unit("Pa", gt=0)] | None = None
+
+    @abstractmethod
+    def friction(self, sliding_speed: float, rolling_speed: float) -> float:
+        """Friction force over load, without the limit of decomposition; speeds of the tread over the road and through
+        the footprint, m/s."""
+
+
+class ConstantFriction(UniformSliding):
     """The same coefficient at every slip: used force over load. At small slip 0.8 is an upper bound."""
 
     law: Literal["constant"]
@@ -54,7 +63,7 @@ class ConstantFriction(SlidingLaw):
         return self.coefficient
 
 
-class Brush(SlidingLaw):
+class Brush(UniformSliding):
     """mu (1 - (1 - x)^3), x = v_s/(w r)/``full_slip`` up to 1: bristles stick at the front and slide at the rear.
 
     The brush of uniform bristles under a parabolic pressure (Pacejka, *Tire and Vehicle Dynamics*, ch. 3); force times
@@ -70,3 +79,13 @@ class Brush(SlidingLaw):
         full = self.full_slip * rolling_speed
         x = sliding_speed / full if full > sliding_speed else 1.0
         return self.coefficient * (1.0 - (1.0 - x) ** 3)
+
+
+class RollingFriction(SlidingLaw):
+    """Friction of the tyre that rolls, leans and corners, with the coefficient of the tread's card.
+
+    `tyrefem.mechanics.rolling` gives the friction power of every ring of the tread and the strain cycle.
+    """
+
+    law: Literal["rolling"]
+    rolls: ClassVar[bool] = True

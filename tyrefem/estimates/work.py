@@ -39,6 +39,8 @@ STEPS, STEPS_AT, FACTORISATIONS = 60.0, 0.01, 12.0
 # 1 ms (the truck, inflated in 4 load steps: 2 ms), a further load 0.2 ms; in large motion 0.16 to 0.47 MB, 6 to
 # 12 ms, more where its load steps are many.
 BODY, INFLATE, LOAD, LARGE_BODY, LARGE = 45e3, 2e-3, 2e-4, 0.47e6, 0.015
+# s per node of rolling with friction (passenger, full section, 3500 nodes, 80 harmonics): compliances, and a state.
+ROLLING_TYRE, ROLLING_STATE = 3e-3, 2e-3
 #: Bytes per node that an inflated tyre keeps (nine pressures of the passenger), and the number of tyres kept.
 KEPT, REMEMBERED = 25e3, 16
 #: Bytes of a mesh per vertex (31 000 to 62 000 vertices).
@@ -213,6 +215,11 @@ def mechanics(nodes: float, inflations: int = 1, loads: int = 1, *, large: bool 
     kept = min(inflations, REMEMBERED) - 1
     body, load = (LARGE_BODY, LARGE) if large else (BODY, LOAD)
     return Estimate(nodes * (body + kept * KEPT), nodes * (inflations * INFLATE + loads * load))
+
+
+def rolling(nodes: float, tyres: int, states: int) -> Estimate:
+    """Rolling with friction beyond inflation and footprint: compliances of ``tyres``, and ``states`` of rolling."""
+    return Estimate(0.0, nodes * (tyres * ROLLING_TYRE + states * ROLLING_STATE))
 
 
 def contact(nodes: float, harmonics: float, angles: float, components: int = 2) -> float:

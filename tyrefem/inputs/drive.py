@@ -69,6 +69,10 @@ class Phase(Card):
     slip_speed: Annotated[Ramp, RampOf(Unit("m/s", ge=-FASTEST, le=FASTEST))] | None = None
     #: Angle between the wheel's plane and its motion, of either sign.
     slip_angle: Annotated[Ramp, RampOf(Unit("rad"))] | None = None
+    #: Torque of the axle, positive drives, instead of a slip. Only with the law of sliding ``rolling``.
+    torque: Annotated[Ramp, RampOf(Unit("N*m"))] | None = None
+    #: Lean of the wheel, positive: the side z > 0 comes down. Only with the law of sliding ``rolling``.
+    camber: Annotated[Ramp, RampOf(Unit("rad"))] | None = None
 
     @model_validator(mode="after")
     def _one_of_load_and_deflection(self) -> Phase:
@@ -179,9 +183,15 @@ STEEPEST = math.radians(45.0)
 LOOKS = tuple(i / 50 for i in range(51))
 
 
+#: Quantities that make the tread slide.
+SLIPS = ("slip_ratio", "slip_speed", "slip_angle", "torque", "camber")
+#: Largest camber: beyond it a wheel falls over (a judgement).
+LEANING = math.radians(30.0)
+
+
 def slides(phase: Phase) -> bool:
-    """True if the phase has slip."""
-    ramps = (phase.slip_ratio, phase.slip_speed, phase.slip_angle)
+    """True if the phase has slip, torque or camber."""
+    ramps = (getattr(phase, key) for key in SLIPS)
     return any(ramp is not None and (ramp.start != 0 or ramp.end != 0) for ramp in ramps)
 
 
@@ -199,15 +209,21 @@ def check_slip(phase: Phase) -> None:
     """Refuse impossible slip; the InputError names the key."""
     if phase.slip_ratio is not None and phase.slip_speed is not None:
         raise InputError("give 'slip_ratio' or 'slip_speed', not both", field="slip_speed")
-    if phase.slip_angle is not None:
-        for angle in (phase.slip_angle.start, phase.slip_angle.end):
-            if abs(angle) > STEEPEST * (1 + 1e-9):
-                raise InputError(f"{math.degrees(angle):.4g} deg is out of range: -45 to 45 deg", field="slip_angle")
+    if phase.torque is not None and (phase.slip_ratio is not None or phase.slip_speed is not None):
+        key = "slip_speed" if phase.slip_ratio is None else "slip_ratio"
+        raise InputError(f"give 'torque' or '{key}', not both: one follows from the other", field="torque")
+    for key, most in (("slip_angle", STEEPEST), ("camber", LEANING)):
+        ramp = getattr(phase, key)
+        for angle in () if ramp is None else (ramp.start, ramp.end):
+            if abs(angle) > most * (1 + 1e-9):
+                limit = math.degrees(most)
+                raise InputError(
+                    f"{math.degrees(angle):.4g} deg is out of range: -{limit:g} to {limit:g} deg", field=key
+                )
     if not slides(phase):
         return
     if phase.stands:
-        keys = ("slip_ratio", "slip_speed", "slip_angle")
-        key = next(key for key in keys if (ramp := getattr(phase, key)) is not None and (ramp.start or ramp.end))
+        key = next(key for key in SLIPS if (ramp := getattr(phase, key)) is not None and (ramp.start or ramp.end))
         raise InputError("needs a speed, but the vehicle stands: remove it or make it 0 in this phase", field=key)
     for motion in (motion_in(phase, fraction) for fraction in LOOKS if phase.slip_speed is not None):
         if abs(motion.slip_speed) > motion.forward_speed * (1 + 1e-9):

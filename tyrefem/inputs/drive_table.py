@@ -14,8 +14,9 @@ from tyrefem.errors import InputError, nearest
 EXCLUSIVE_KEYS = {
     "load": ["deflection"],
     "deflection": ["load"],
-    "slip_ratio": ["slip_speed"],
-    "slip_speed": ["slip_ratio"],
+    "slip_ratio": ["slip_speed", "torque"],
+    "slip_speed": ["slip_ratio", "torque"],
+    "torque": ["slip_ratio", "slip_speed"],
 }
 
 

@@ -12,6 +12,7 @@ from typing import Annotated, ClassVar, Literal, Protocol
 from tyrefem.boundaries.road_film import hedekel_length
 from tyrefem.cards import Card, Text
 from tyrefem.errors import InputError
+from tyrefem.inputs.wheel_state import WheelState
 from tyrefem.quantity import Unit
 
 
@@ -142,6 +143,7 @@ class LoadCase:
     contact : contact from a strain law that presses the tyre, with its load and deflection. None: the study's laws
         give load, deflection and contact.
     speed : of the tread through the footprint, m/s, where the strain cycle depends on it; else 0.
+    wheel : slip or torque, slip angle and camber of a wheel that rolls with friction; None: without friction.
     """
 
     load: float
@@ -153,6 +155,7 @@ class LoadCase:
     by_deflection: bool = False
     contact: PressedContact | None = None
     speed: float = 0.0
+    wheel: WheelState | None = None
 
     @property
     def rolling_radius(self) -> float:

@@ -16,6 +16,7 @@ from tyrefem.inputs.study_effects import check_effects
 from tyrefem.inputs.study_parts import StudyParts, error_as_written
 from tyrefem.inputs.uncertain_numbers import UncertainNumber, uncertain_numbers
 from tyrefem.inputs.warnings import study_warnings
+from tyrefem.inputs.wheel_checks import check_wheel_states
 from tyrefem.materials.card import MaterialCard
 
 if TYPE_CHECKING:
@@ -54,6 +55,10 @@ class StudyContents(Brief):
         object.__setattr__(self, "parts", parts)
         if built is None:
             check_effects(self)
+            try:
+                check_wheel_states(self)
+            except InputError as error:
+                raise self.as_written(error) from None
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickle the parts too, because the cards may differ where the study is unpickled."""

@@ -16,6 +16,7 @@ from tyrefem.inputs.drive import Drive
 from tyrefem.inputs.loading import GivenFootprint, LoadCase, load_case
 from tyrefem.inputs.motion import WheelMotion, motion_in
 from tyrefem.inputs.study import StudyData
+from tyrefem.inputs.wheel_state import wheel_state
 from tyrefem.materials.reads import ARCS, FEM_ROLLING, values_read
 from tyrefem.mechanics.arc_geometry import BiasPlies
 from tyrefem.mechanics.arcs import ArcStiffness
@@ -177,11 +178,22 @@ def cycle_schedule(study: StudyData) -> CycleSchedule:
 
 
 def changes_cycle(study: StudyData, number: int) -> bool:
-    """True if the strain cycle changes during a phase: load, deflection, pressure, or a turning tyre's speed."""
+    """True if the strain cycle changes during a phase: load, deflection, pressure, a turning tyre's speed, or slip,
+    torque, slip angle and camber with friction."""
     phase = study.card.drive.phases[number]
-    if phase.changes_load or not study.card.mechanics.rolling:
-        return phase.changes_load
-    return motion_in(phase, 0.0).rolling_speed != motion_in(phase, 1.0).rolling_speed
+    if phase.changes_load:
+        return True
+    if study.card.boundaries.sliding.rolls and wheel_state(phase, 0.0) != wheel_state(phase, 1.0):
+        return True
+    return _speed_matters(study) and motion_in(phase, 0.0).rolling_speed != motion_in(phase, 1.0).rolling_speed
+
+
+def _speed_matters(study: StudyData) -> bool:
+    """True if the strain cycle depends on the speed: by inertia and loss, or by friction."""
+    if study.card.mechanics.rolling:
+        return True
+    laws = (card.friction for card in study.materials.values())
+    return study.card.boundaries.sliding.rolls and any(law is not None and law.law != "constant" for law in laws)
 
 
 def check_cases(study: StudyData) -> None:
@@ -208,6 +220,13 @@ def same_cycles(study: StudyData, other: StudyData) -> bool:
     law = strain_law(study)
     if law.by_elements and study.card.mesh != other.card.mesh:
         return False
+    if study.card.boundaries.sliding.rolls or other.card.boundaries.sliding.rolls:
+        laws = [
+            (each.card.boundaries.sliding.rolls, *(card.friction for card in each.materials.values()))
+            for each in (study, other)
+        ]
+        if laws[0] != laws[1]:
+            return False
     reads = FEM_ROLLING if study.card.mechanics.rolling else law.name
     return values_read(reads, study.materials) == values_read(reads, other.materials)
 
@@ -304,4 +323,8 @@ def _load_case(study: StudyData, number: int, fraction: float, pressure_ratio: f
         drum_diameter=phase.drum_diameter,
         footprint=mechanics.footprint,
     )
-    return replace(case, speed=motion_in(phase, fraction).rolling_speed) if mechanics.rolling else case
+    if _speed_matters(study):
+        case = replace(case, speed=motion_in(phase, fraction).rolling_speed)
+    if study.card.boundaries.sliding.rolls and not phase.stands:
+        case = replace(case, wheel=wheel_state(phase, fraction))
+    return case

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from tyrefem.inputs.study import StudyData
     from tyrefem.mechanics.footprint.footprint import Footprint
     from tyrefem.mechanics.footprint.strain_harmonics import LinearisationError
+    from tyrefem.mechanics.rolling.friction_rings import FrictionRings
     from tyrefem.mechanics.solid.elements import Rings
     from tyrefem.mechanics.solid.inflation import Inflation
 
@@ -73,11 +74,13 @@ class GaussPoints:
 @dataclass(frozen=True, eq=False)
 class PointEnergies:
     """A strain cycle as energies at Gauss points: ``densities`` (orders, n_elements, n_points) U, J/m3, by
-    `strain.ORDERS`. Each of the ``zones`` is a whole region."""
+    `strain.ORDERS`. Each of the ``zones`` is a whole region. ``friction``: of the tread's rings, if it rolls with
+    friction."""
 
     zones: tuple[Zone, ...]
     points: GaussPoints
     densities: Array
+    friction: FrictionRings | None = None
 
     @functools.cached_property
     def density(self) -> Array:
@@ -98,7 +101,11 @@ class PointEnergies:
         densities = _padded(self.densities, size)
         for other, share in others:
             densities = densities + share * (_padded(other.densities, size) - _padded(self.densities, size))
-        return PointEnergies(self.zones, self.points, np.maximum(densities, 0.0))
+        friction = self.friction
+        if friction is not None:
+            rings = [(other.friction, share) for other, share in others if other.friction is not None]
+            friction = friction.interpolated(rings)
+        return PointEnergies(self.zones, self.points, np.maximum(densities, 0.0), friction)
 
 
 def _padded(densities: Array, size: int) -> Array:
@@ -182,7 +189,12 @@ class FiniteElements:
     @functools.cached_property
     def energies(self) -> PointEnergies:
         """The energies without the tyre."""
-        return PointEnergies(self.zones, GaussPoints(self.tyre.body.rings), self.densities)
+        return PointEnergies(self.zones, GaussPoints(self.tyre.body.rings), self.densities, self.friction)
+
+    @property
+    def friction(self) -> FrictionRings | None:
+        """Friction of the tread's rings; None: the tyre does not roll with friction."""
+        return getattr(self.footprint, "friction", None)
 
     def energy_density(self, zone: str, points: Array) -> Array:
         """U, J/m3, at points (2, n) in (r, z) of a region of the undeformed section."""
@@ -205,8 +217,26 @@ def provider(study: StudyData) -> Callable[..., FiniteElements]:
     ------
     InputError : when called: no equilibrium, or a load that the tyre cannot carry.
     """
-    if study.card.mechanics.rolling:
-        return _turning_provider(study)
+    without_friction = _turning_provider(study) if study.card.mechanics.rolling else _standing_provider(study)
+    mechanics = study.card.mechanics
+    factor, one_cycle = LOSS_FACTOR[mechanics.loss_convention], mechanics.revolution == "one-cycle"
+
+    def cycle(case: LoadCase, near: FiniteElements | None = None) -> FiniteElements:
+        given = case.deflection if case.by_deflection else case.load
+        turns = case.speed > 0 or not mechanics.rolling
+        if case.wheel is None or given <= 0 or not turns:
+            return without_friction(case, near)
+        from tyrefem.mechanics.rolling.rolled_footprint import rolled_footprint
+
+        footprint = rolled_footprint(study, case)
+        laws = strain_laws(footprint.tyre.study.materials)
+        return FiniteElements(footprint.tyre.tyre, footprint, case, factor, one_cycle, laws)
+
+    return cycle
+
+
+def _standing_provider(study: StudyData) -> Callable[..., FiniteElements]:
+    """`provider` of a tyre that stands while it is pressed."""
     mechanics = study.card.mechanics
     factor, one_cycle = LOSS_FACTOR[mechanics.loss_convention], mechanics.revolution == "one-cycle"
     tyre = pressed_tyre(study)

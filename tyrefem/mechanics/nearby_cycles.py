@@ -17,6 +17,7 @@ from tyrefem.inputs.loading import LoadCase, PressedContact
 from tyrefem.inputs.uncertain_numbers import UncertainNumber, written_at
 from tyrefem.mechanics.cycle_schedule import CycleSchedule, KnotSolver, cycle_schedule, same_cycles
 from tyrefem.mechanics.finite_elements import PointEnergies
+from tyrefem.mechanics.rolling.friction_rings import CHANGING
 from tyrefem.mechanics.strain_cycle import solved_case
 from tyrefem.output import atomic_path
 
@@ -51,7 +52,13 @@ class SolvedCycles:
             (load, deflection, pressure, radius, drum), contact = kept["case"], kept["contact"]
             case = LoadCase(float(load), float(deflection), float(pressure), float(radius), float(drum))
             contact = PressedContact(*map(float, contact)) if len(contact) else None
-            return replace(case, contact=contact), replace(like, densities=kept["densities"])
+            friction = like.friction
+            if friction is not None:
+                changed: dict[str, Any] = {
+                    name: kept[name] if kept[name].ndim else float(kept[name]) for name in CHANGING
+                }
+                friction = replace(friction, **changed)
+            return replace(case, contact=contact), replace(like, densities=kept["densities"], friction=friction)
 
     def _store(self, name: str, solved: Solved) -> Solved:
         file = self._file(name)
@@ -60,7 +67,10 @@ class SolvedCycles:
             numbers = (case.load, case.deflection, case.pressure, case.outer_radius, case.drum_diameter)
             contact = () if case.contact is None else astuple(case.contact)
             with atomic_path(file) as temporary, temporary.open("wb") as stream:
-                np.savez(stream, case=numbers, contact=contact, densities=energies.densities)
+                rings: dict[str, Any] = {}
+                if (friction := energies.friction) is not None:
+                    rings = {name: getattr(friction, name) for name in CHANGING}
+                np.savez(stream, case=numbers, contact=contact, densities=energies.densities, **rings)
         return solved
 
 
@@ -158,7 +168,8 @@ class _Neighbours(dict[str, list[list[Solved]]]):
             def solve() -> Solved:
                 cycle = solver.cycle(phase, case, start)
                 # Interpolated to the same points, so that the mesh of the other cycle need not be kept.
-                return solved_case(cycle, case), replace(like, densities=_energies(cycle).densities)
+                energies = _energies(cycle)
+                return solved_case(cycle, case), replace(like, densities=energies.densities, friction=energies.friction)
 
             return near.solved.get(f"{key} {case!r}", like, solve)
 

@@ -132,7 +132,7 @@ def boundary_rows(study: StudyData) -> list[list[str]]:
     """One row per side: side, law, its description, and its numbers in SI."""
     laws = study.card.boundaries
     rows = []
-    rubs = any(phase.slides for phase in study.card.drive.phases)
+    rubs = laws.sliding.rolls or any(phase.slides for phase in study.card.drive.phases)
     for side in ("road", "outside_air", "contained_air", "rim", *(["sliding"] if rubs else [])):
         law = getattr(laws, side)
         words = (type(law).__doc__ or "").strip().partition("\n")[0]
@@ -292,6 +292,12 @@ SLIDING = {
     "of tread and road divide its heat. Wear, water, tread gaps, camber and the strain of braking and cornering "
     "are left out.",
 }
+ROLLING = {
+    "Steady rolling with friction": "Each state of slip, torque, slip angle and camber is steady rolling in small "
+    "motion about the inflated tyre. Friction heat of every ring of the tread is its mean over the revolution; the "
+    "effusivities of tread and road divide it. The coefficient of friction does not follow the temperature of the "
+    "run. Wear, water and tread gaps are left out.",
+}
 GIVEN = (
     "The study gives every region's strain energy, proportional to the deflection squared. Temperatures and rolling "
     "resistance are as accurate as these numbers."
@@ -308,6 +314,7 @@ def assumptions(study: StudyData, estimates: list[str]) -> list[tuple[str, str]]
     mechanics = study.card.mechanics
     drive = study.card.drive
     slip = SLIDING if any(phase.slides for phase in drive.phases) else FREE
+    slip = ROLLING if study.card.boundaries.sliding.rolls else slip
     locked = LOCKED if any(drive.locked_since(start) is not None for start in drive.starts) else {}
     always = [*ALWAYS.items()]
     given = mechanics.energy if mechanics.strain == "given" else None

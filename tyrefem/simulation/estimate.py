@@ -13,6 +13,7 @@ from tyrefem.estimates import work as estimate
 from tyrefem.estimates.work import Estimate
 from tyrefem.geometry.meshing.expected import QUADRATIC, expected_nodes
 from tyrefem.inputs.motion import motion_in
+from tyrefem.inputs.wheel_state import wheel_state
 from tyrefem.mechanics.cycle_schedule import changes_cycle, ramp_knots
 from tyrefem.mechanics.footprint.footprint import QUICK_LOOK
 from tyrefem.mechanics.footprint.pressed_tyre import COARSER
@@ -71,13 +72,15 @@ class RunEstimate:
             for fraction in ramp_knots(changes_cycle(self.study, number)):
                 pressures.add(phase.pressure.at(fraction))
                 speed = motion_in(phase, fraction).speed if card.mechanics.rolling else 0.0
-                loads.add((phase.pressure.at(fraction), carried.at(fraction), phase.drum_diameter, speed))
+                wheel = wheel_state(phase, fraction) if card.boundaries.sliding.rolls and not phase.stands else None
+                loads.add((phase.pressure.at(fraction), carried.at(fraction), phase.drum_diameter, speed, wheel))
         feedback = card.mechanics.feedback
         again = 1 if feedback is None else self._runs * feedback.knots
         nodes = QUADRATIC * expected_nodes(self.study.section, COARSER * self.mesh.size, through=1)
+        rolled = len({case for case in loads if case[-1] is not None})
         return estimate.mechanics(
             nodes, len(pressures) * again, len(loads) * again, large=card.mechanics.motion == "large"
-        )
+        ) + estimate.rolling(nodes, len(pressures) * again if rolled else 0, rolled * again)
 
     @property
     def _runs(self) -> int:

@@ -61,7 +61,7 @@ def phase_states(tyre: RollingTyre) -> tuple[PhaseState, ...]:
                 tyre.road_film(t) + tyre.sliding.skid_film(t),
                 tyre.air_film(t),
                 tyre.propagation_depth(t),
-                motion.sliding_speed,
+                tyre.sliding.sliding_speed(t),
                 drive.locked_since(t) is not None,
             )
         )

@@ -22,6 +22,7 @@ from tyrefem.mechanics.nearby_cycles import NearbyCycles
 from tyrefem.mechanics.strain_cycle import LOSS_FACTOR
 from tyrefem.simulation.heat_budget import FRICTION
 from tyrefem.simulation.heat_source import HeatSource
+from tyrefem.simulation.rolling_tread import RollingTread
 from tyrefem.simulation.sliding_tread import SlidingTread
 from tyrefem.simulation.surroundings import GAS, RIM, Surroundings
 
@@ -234,7 +235,8 @@ class RollingTyre(Surroundings):
     @functools.cached_property
     def sliding(self) -> SlidingTread:
         """Friction heat of the tread on the road, in phases with slip."""
-        return SlidingTread(self, self.mesh)
+        rolls = self.study.card.boundaries.sliding.rolls
+        return RollingTread(self, self.mesh) if rolls else SlidingTread(self, self.mesh)
 
     @functools.cached_property
     def problem(self) -> Conduction:

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from tyrefem.simulation.heat_budget import HeatBudget
     from tyrefem.simulation.phases import PhaseState
     from tyrefem.simulation.rolling_tyre import RollingTyre
+    from tyrefem.simulation.sliding_tread import SlidingTread
 
 Array = NDArray[np.float64]
 Numbers = NDArray[np.intp]
@@ -161,7 +162,7 @@ def sliding_outcome(run: SlidingRun) -> SlidingOutcome | None:
     for number, phase in enumerate(run.study.card.drive.phases):
         start = run.study.card.drive.starts[number]
         numbers = np.flatnonzero((run.times >= start - 1e-6) & (run.times <= start + phase.duration + 1e-6))
-        if phase.slides and len(numbers) > 1:
+        if run.tyre.sliding.rubs(phase) and len(numbers) > 1:
             readings = list(_series(run, number, numbers))
             series = pd.DataFrame(readings)
             rows += readings
@@ -188,27 +189,37 @@ def _series(run: SlidingRun, number: int, numbers: Numbers) -> Iterator[dict[str
         t = _within(run, number, int(i))
         nodes = run.history.values[i][surface.dofs]
         T = surface.trace @ nodes
-        mean, flux = float(surface.weight @ T / surface.area), sliding.friction_flux(t, T)
-        used, wanted = float(surface.weight @ flux / surface.area), sliding.uncapped_flux(t)
+        mean, flux = float(surface.weight @ T / surface.area), sliding.friction_flux(surface.x, t, T)
+        most = sliding.uncapped_flux(surface.x, t)
+        used, wanted = sliding.friction_power(flux, t), sliding.friction_power(most, t)
         friction, passage = sliding.friction(t), sliding.passage(t)
         locked = drive.locked_since(t) is not None
         share = 0.0 if passage is None else passage.tread_share
         if locked and used > 0:
-            share = 1.0 - sliding.skid_film(t) * (skid - run.tyre.road_temperature(t)) / used
+            flux_used = used / sliding.contact_area(t)
+            share = 1.0 - sliding.skid_film(t) * (skid - run.tyre.road_temperature(t)) / flux_used
         yield {
             "phase": phase.name,
             "time_s": float(run.times[i]),
-            "sliding_speed_m_s": run.tyre.motion(t).sliding_speed,
+            "sliding_speed_m_s": sliding.sliding_speed(t),
             "contact_pressure_Pa": sliding.pressure(t),
             "friction": friction * used / wanted if wanted > 0 else friction,
-            "capped": bool(flux.min() < wanted * (1 - 1e-9)),
-            "friction_power_W": used * sliding.contact_area(t),
+            "capped": bool((flux < most * (1 - 1e-9)).any()),
+            "friction_power_W": used,
             "tread_share": share,
             "tread_mean_degC": mean,
             "tread_hottest_degC": float(nodes.max()),
             "half_space_degC": skid,
-            "exit_edge_degC": float(np.max(sliding.exit_edge(t, np.array([skid]) if locked else nodes))),
+            "exit_edge_degC": float(np.max(_exit_edge(sliding, t, skid if locked else nodes))),
         }
+
+
+def _exit_edge(sliding: SlidingTread, t: float, T: Array | float) -> Array:
+    """At the nodes of the tread's surface; for the one temperature of a locked wheel at one of them."""
+    points = sliding.surface.points
+    if isinstance(T, np.ndarray):
+        return sliding.exit_edge(points, t, T)
+    return sliding.exit_edge(points[:, :1], t, np.array([T]))
 
 
 def _half_space(run: SlidingRun, number: int, numbers: Numbers) -> Array:
@@ -228,7 +239,7 @@ def _half_space(run: SlidingRun, number: int, numbers: Numbers) -> Array:
 
     return half_space_surface(
         np.array(inside) - since,
-        lambda time: float(sliding.friction_flux(at(time), np.array([initial]))[0]),
+        lambda time: float(sliding.friction_flux(sliding.surface.points[:, :1], at(time), np.array([initial]))[0]),
         lambda time: sliding.skid_film(at(time)),
         lambda time: tyre.road_temperature(at(time)),
         initial,

@@ -14,9 +14,9 @@ from tyrefem.conduction import Film, Flux
 from tyrefem.conduction.operators import Surface, operators_of
 
 if TYPE_CHECKING:
-    from tyrefem.boundaries.sliding import SlidingLaw
+    from tyrefem.boundaries.sliding import UniformSliding
     from tyrefem.geometry.meshing import TyreMesh
-    from tyrefem.inputs.drive import Drive
+    from tyrefem.inputs.drive import Drive, Phase
     from tyrefem.simulation.surroundings import Surroundings
 
 Array = NDArray[np.float64]
@@ -45,15 +45,19 @@ class SlidingTread:
         return self.surroundings.drive
 
     @property
-    def law(self) -> SlidingLaw:
+    def law(self) -> UniformSliding:
         """The study's ``[boundaries] sliding``."""
-        return self.surroundings.study.card.boundaries.sliding
+        law: Any = self.surroundings.study.card.boundaries.sliding
+        return law
+
+    def rubs(self, phase: Phase) -> bool:
+        """True if the tread slides on the road in a phase."""
+        return phase.slides
 
     @property
     def conditions(self) -> list[Flux | Film]:
         """Conditions of slip on the boundary ``road``: friction heat, and the film of a locked wheel; else none."""
-        phases = self.drive.phases
-        if not any(phase.slides for phase in phases):
+        if not any(self.rubs(phase) for phase in self.drive.phases):
             return []
         heat = Flux(self.mean_heat, of_temperature=True)
         if all(self.drive.locked_since(start) is None for start in self.drive.starts):
@@ -65,7 +69,7 @@ class SlidingTread:
         """Times of the readings in phases with slip, s."""
         share = np.linspace(0.0, 1.0, READINGS + 1)[1:-1] ** 2
         parts = zip(self.drive.starts, self.drive.phases, strict=True)
-        return [start + phase.duration * x for start, phase in parts if phase.slides for x in share.tolist()]
+        return [start + phase.duration * x for start, phase in parts if self.rubs(phase) for x in share.tolist()]
 
     @functools.cached_property
     def surface(self) -> Surface:
@@ -120,27 +124,41 @@ class SlidingTread:
         rolling = 0.0 if self.drive.locked_since(t) is not None else motion.rolling_speed
         return Passage(*self.effusivities, length, rolling, motion.forward_speed)
 
-    def uncapped_flux(self, t: float) -> float:
-        """F_0 = mu p v_s, not limited by decomposition, W/m2 of contact."""
-        return self.friction(t) * self.pressure(t) * self.surroundings.motion(t).sliding_speed
+    def sliding_speed(self, t: float) -> float:
+        """Speed of the tread over the road, m/s."""
+        return self.surroundings.motion(t).sliding_speed
 
-    def friction_flux(self, t: float, T: Array) -> Array:
-        """F_0 at surface temperatures T (n,), W/m2, limited to keep the exit edge below decomposition (13)."""
-        flux = np.full(np.shape(T), self.uncapped_flux(t))
+    def contact_share(self, _x: Array, t: float) -> Array | float:
+        """Share of a revolution in which points x (2, n) are in contact."""
+        return self.footprint_share(t)
+
+    def uncapped_flux(self, _x: Array, t: float) -> Array | float:
+        """F_0 = mu p v_s at points x (2, n), not limited by decomposition, W/m2 of contact."""
+        return self.friction(t) * self.pressure(t) * self.sliding_speed(t)
+
+    def friction_flux(self, x: Array, t: float, T: Array) -> Array:
+        """F_0 at points x (2, n) with temperatures T (n,), W/m2, limited to keep the exit edge below decomposition
+        (13)."""
+        flux = np.broadcast_to(self.uncapped_flux(x, t), np.shape(T))
         passage = self.passage(t)
         if passage is None or not flux.any():
             return np.zeros(np.shape(T))
         most = passage.largest_flux(self.law.decomposition_temperature, T, self.surroundings.road_temperature(t))
         return np.asarray(np.minimum(flux, np.maximum(most, 0.0)))
 
-    def mean_heat(self, _x: Any, t: float, T: Array) -> Array:
+    def friction_power(self, flux: Array | float, t: float) -> float:
+        """Friction power of the whole tyre, W, from the flux F_0 at the points of `surface`."""
+        mean = float((self.surface.weight * flux).sum() / self.surface.area)
+        return mean * self.contact_area(t)
+
+    def mean_heat(self, x: Array, t: float, T: Array) -> Array:
         """Heat flux into the section, W/m2: mean of the tread's share over the revolution; F_0 for a locked wheel."""
-        flux, passage = self.friction_flux(t, T), self.passage(t)
+        flux, passage = self.friction_flux(x, t, T), self.passage(t)
         if passage is None:
             return flux
         if self.drive.locked_since(t) is not None:
             return self.surroundings.road_fraction(t) * flux
-        return self.footprint_share(t) * passage.tread_share * flux
+        return np.asarray(self.contact_share(x, t) * passage.tread_share * flux)
 
     def skid_film(self, t: float) -> float:
         """Film between a locked wheel and the passing road, W/m2/K; 0 if the wheel turns or the vehicle stands."""
@@ -149,8 +167,8 @@ class SlidingTread:
             return 0.0
         return passage.skid_film(max(t - since, 0.0))
 
-    def exit_edge(self, t: float, T: Array) -> Array:
-        """Temperature at the exit edge of the contact, degC, from the surface's T (n,).
+    def exit_edge(self, x: Array, t: float, T: Array) -> Array:
+        """Temperature at the exit edge of the contact, degC, from the surface's T (n,) at points x (2, n).
 
         Rolling: `Passage.frictionless_temperature` plus the rise of the passage (1, 3, 5). Locked: the rise of the
         surface over the road, which is the mean over the contact, times the ratio of exit and mean.
@@ -161,4 +179,4 @@ class SlidingTread:
         since = self.drive.locked_since(t)
         if since is not None:
             return np.asarray(road + (np.asarray(T) - road) / passage.road_age(max(t - since, 0.0))[1])
-        return np.asarray(passage.frictionless_temperature(T, road) + passage.exit_rise(self.friction_flux(t, T)))
+        return np.asarray(passage.frictionless_temperature(T, road) + passage.exit_rise(self.friction_flux(x, t, T)))

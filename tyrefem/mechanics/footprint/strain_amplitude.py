@@ -77,7 +77,7 @@ class StrainAmplitude(Brief):
     @functools.cached_property
     def factor(self) -> Array:
         """(n_elements, n_points) loss of a point over that without strain dependence, alike at every frequency."""
-        orders = np.arange(self.cycle.footprint.harmonics + 1)[:, None, None]
+        orders = np.arange(len(self.cycle.storage_products))[:, None, None]
         total, rubber = (
             (orders * products).sum(axis=0) for products in (self.cycle.storage_products, self.cycle.rubber_products)
         )

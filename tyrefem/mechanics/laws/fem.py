@@ -28,6 +28,13 @@ class FootprintByElements(StrainLaw):
 
     def assumption_of(self, study: StudyData) -> tuple[str, str]:
         """Large motion, or the linear one with what it leaves out."""
+        if study.card.boundaries.sliding.rolls:
+            return (
+                "A footprint with friction",
+                "The section is inflated and rolls on the road by Fourier harmonics of small motion about that state, "
+                "with stick and slip. Rotations under the footprint are not small: the tyre is too stiff and its "
+                "strains too large.",
+            )
         if study.card.mechanics.rolling:
             return (
                 "A footprint that turns without friction",

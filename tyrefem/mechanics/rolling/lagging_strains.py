@@ -4,17 +4,32 @@ from __future__ import annotations
 
 import functools
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.mechanics.footprint.footprint import Footprint
 from tyrefem.mechanics.footprint.strain_harmonics import StrainHarmonics
-from tyrefem.mechanics.rolling.free_rolling import FreeRolling
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
+
+
+class RollingHarmonics(Protocol):
+    """A rolling tyre whose harmonics have cosines and sines."""
+
+    @property
+    def harmonics(self) -> int:
+        """Highest harmonic."""
+
+    @property
+    def deflection(self) -> float:
+        """m."""
+
+    @property
+    def amplitudes(self) -> Complex:
+        """(harmonics + 1, n_dofs) complex amplitudes U, m, of u = Re((U_r, U_z, -i U_t) e^(i n t))."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,11 +43,11 @@ class LaggingFootprint(Footprint):
     rolling : the tyre with loss. travel : m rolled per radian, speed over W.
     """
 
-    rolling: FreeRolling | None = None
+    rolling: RollingHarmonics | None = None
     travel: float = 0.0
 
     @property
-    def lagging(self) -> FreeRolling:
+    def lagging(self) -> RollingHarmonics:
         """The tyre with loss."""
         assert self.rolling is not None
         return self.rolling
@@ -51,7 +66,7 @@ class LaggingStrains(StrainHarmonics):
     """
 
     @property
-    def _lagging(self) -> FreeRolling:
+    def _lagging(self) -> RollingHarmonics:
         assert isinstance(self.footprint, LaggingFootprint)
         return self.footprint.lagging
 

@@ -25,6 +25,7 @@ from tyrefem.requirements import Requirements
 
 if TYPE_CHECKING:
     from tyrefem.inputs.study import StudyData
+    from tyrefem.materials.road_friction import RoadFriction
 
 Array = NDArray[np.float64]
 #: Requirements of rolling on the study.
@@ -174,17 +175,22 @@ def row(wheel: WheelOnRoad, state: RolledTyre) -> dict[str, float]:
     }
 
 
-def tread_friction(pressed: Pressed) -> float | FrictionLaw:
-    """Friction of the card of the region that meets the road, at the drive's initial temperature; else `FRICTION`."""
-    state, study = pressed.tyre.state, pressed.study
+def friction_card(pressed: Pressed) -> RoadFriction | None:
+    """Friction of the card of the region that meets the road."""
+    state = pressed.tyre.state
     on_road = state.mesh.f2t[0, np.asarray(state.mesh.boundaries[state.tread])]
     shares = {name: int(np.isin(on_road, members).sum()) for name, members in state.mesh.subdomains.items()}
-    law = study.materials[max(shares, key=lambda name: shares[name])].friction
+    return pressed.study.materials[max(shares, key=lambda name: shares[name])].friction
+
+
+def tread_friction(pressed: Pressed) -> float | FrictionLaw:
+    """Friction of the card of the region that meets the road, at the drive's initial temperature; else `FRICTION`."""
+    law = friction_card(pressed)
     if law is None:
         return FRICTION
     if law.law == "constant" and not law.pressure_exponent:
         return law.coefficient
-    temperature = float(study.card.drive.initial)
+    temperature = float(pressed.study.card.drive.initial)
     return lambda speed, pressure: law(speed, pressure, temperature)
 
 
