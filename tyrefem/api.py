@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from tyrefem.heating_test.readings import HeatingTest
     from tyrefem.inputs.study_parts import StudyParts
     from tyrefem.measured.cases import Case
+    from tyrefem.wear.drive_wear import DriveWear
     from tyrefem.wear.ring_wear import RingWear
 
 Data = TypeVar("Data")
@@ -421,6 +422,17 @@ class Study(studies.StudyData):
         True
         """
         return with_verbs(RollingWheel, rolls.roll(self, **options))
+
+    def wear(self) -> DriveWear:
+        """Wear of the tread over the drive, by ring; the drive's phases roll with friction.
+
+        Raises
+        ------
+        InputError : a law of sliding other than ``rolling``; no ``[wear]`` on the tread's card.
+        """
+        from tyrefem.wear.drive_wear import drive_wear
+
+        return drive_wear(self)
 
     def slip_curve(self, **options: Any) -> ForcesOverSlip:
         """Forces and moments over several ``slip_angle`` or several ``slip``, with stiffness, trail and peak.

@@ -35,6 +35,27 @@ def test_the_command_writes_what_it_says(here: Path, capfd: pytest.CaptureFixtur
     assert wear.mean * 1e6 == pytest.approx(summary["mean_wear_mm_per_1000_km"], rel=1e-9)
 
 
+def test_without_options_the_drive_of_a_rolling_study_wears(here: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    tread = '{ base = "rubber-tread-aircraft", friction = { coefficient = 1.0, source = "test" } }'
+    values = ["mesh.size=14 mm", f"materials.tread={tread}", "mechanics.strain=fem", "mechanics.motion=linear"]
+    values += ["boundaries.sliding=rolling", "drive.slip_ratio=2 %", "drive.load=4 kN"]
+    options = [word for value in values for word in ("--set", value)]
+    assert main(["wear", "nasa-22x5.5-8pr", *options, "--no-pictures", "--out", "out", "--json"]) == 0
+    summary = json.loads(capfd.readouterr().out)
+    (phase,) = summary["phases"]
+    assert phase["mean_wear_mm_per_1000_km"] == pytest.approx(summary["mean_wear_mm_per_1000_km"], rel=1e-9)
+    assert phase["friction_work_J"] / phase["distance_m"] == pytest.approx(
+        summary["friction_power_W"] / 8.9408, rel=0.01
+    )
+    assert (
+        main(["wear", "nasa-22x5.5-8pr", *options, "--slip", "-2 %", "--slip-angle", "0 deg", "--out", "one", "--json"])
+        == 0
+    )
+    one = json.loads(capfd.readouterr().out)
+    assert one["slip"] == pytest.approx(-0.02)
+    assert one["mean_wear_mm_per_1000_km"] == pytest.approx(summary["mean_wear_mm_per_1000_km"], rel=0.02)
+
+
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [

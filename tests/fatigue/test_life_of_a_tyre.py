@@ -12,7 +12,7 @@ from tyrefem.errors import InputError
 from tyrefem.fatigue.life import LifeData, check, life
 from tyrefem.fatigue.matrix_cycle import STEPS, MatrixCycle
 from tyrefem.fatigue.places import APART, first_places
-from tyrefem.fatigue.sensitivity import changed
+from tyrefem.fatigue.sensitivity import changed, shifts, shifts_of
 from tyrefem.mechanics.cycle_schedule import cycle_schedule
 
 #: A light load: large motion then takes a second.
@@ -174,3 +174,38 @@ def test_large_motion_takes_the_gradient_of_the_balance() -> None:
     # The large motion has smaller strains in the carcass than the linear one, whose rotations strain it.
     energies = matrix.energies("carcass", members)
     assert np.abs(energies.strain).max() < 0.5
+
+
+ROLLING = {
+    "mesh__section": "full", "boundaries__sliding": "rolling", "drive__load": "4 kN",
+    "materials__tread": {"base": "nasa-tread", "friction": {"coefficient": 1.0, "source": "estimate: example"}},
+}  # fmt: skip
+
+
+def test_a_cornering_tyre_lasts_shorter_and_as_long_in_the_other_turn() -> None:
+    free, left, right = (
+        life(tyre(**ROLLING, drive__slip_angle=angle), temperature=60.0) for angle in ("0 deg", "3 deg", "-3 deg")
+    )
+    assert left.shortest < 0.9 * free.shortest
+    assert right.shortest == pytest.approx(left.shortest, rel=1e-3)
+    places = left.rings.points.mean(axis=-1)
+    mirrored = np.array([np.hypot(places[0] - r, places[1] + z).argmin() for r, z in places.T])
+    # The planes tried are not mirror images of each other.
+    inside = np.isfinite(left.element_km) & (left.element_km < 1e6)
+    np.testing.assert_allclose(right.element_km[mirrored][inside], left.element_km[inside], rtol=0.05)
+    sides = left.element_km[inside] / left.element_km[mirrored][inside]
+    assert sides.max() > 1.5
+    # The slip moves the life, too.
+    assert shifts_of(left.study) == ("speed", "load", "pressure", "ambient", "slip")
+    (shift,) = shifts(left, ("slip",))
+    assert shift.ratio < 0.99
+
+
+def test_the_path_of_a_rolling_tyre_closes_and_free_rolling_is_nearly_the_upright_tyre() -> None:
+    rolling: Any = cycle_schedule(tyre(**ROLLING)).cycles[0][0]
+    upright: Any = cycle_schedule(tyre(**{**ROLLING, "boundaries__sliding": "constant"})).cycles[0][0]
+    members = np.asarray(rolling.tyre.mesh.subdomains["carcass"])
+    paths = [MatrixCycle(cycle).energies("carcass", members) for cycle in (rolling, upright)]
+    np.testing.assert_allclose(paths[0].strain[:, STEPS], paths[0].strain[:, -1], atol=1e-9)
+    swings = [np.ptp(path.strain[:, STEPS:], axis=1)[:, :4] for path in paths]
+    assert swings[0] == pytest.approx(swings[1], abs=0.1 * swings[1].max())

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import math
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +16,7 @@ from tyrefem.errors import InputError
 from tyrefem.geometry import load
 from tyrefem.materials.card import MaterialCard
 from tyrefem.materials.wear import Wear
-from tyrefem.wear.ring_wear import RingWear
+from tyrefem.wear.ring_wear import RingWear, tread_table
 from tyrefem.wear.worn_section import LEFT, WornProfile, worn_section
 
 TABLE = {"depth": "5 nm", "energy": "1 kJ/m**2", "source": "test"}
@@ -46,6 +47,49 @@ def test_exponent_and_slipping_backwards() -> None:
     once, twice = rings(50.0, exponent=2.0), rings(100.0, exponent=2.0)
     np.testing.assert_allclose(twice.depth_per_km / once.depth_per_km, 4.0, rtol=1e-12)
     assert Wear.check(TABLE).of([-1.0, 0.0]).tolist() == [0.0, 0.0]
+
+
+DRIVE = {
+    "mesh.size": "14 mm", "mesh.section": "full", "mechanics.strain": "fem", "mechanics.motion": "linear",
+    "drive.load": "4 kN", "boundaries.sliding": "rolling",
+    "materials.tread": {"base": "nasa-tread", "friction": {"coefficient": 1.0, "source": "test"}, "wear": TABLE},
+}  # fmt: skip
+
+
+def test_a_drive_wears_as_its_phases_by_their_distance() -> None:
+    phases = [
+        {"name": "left", "slip_angle": "2 deg", "duration": "100 s"},
+        {"name": "straight", "duration": "300 s", "speed": "10 mph"},
+        {"name": "stop", "duration": "50 s", "speed": "0 m/s"},
+    ]
+    study = tf.study("nasa-22x5.5-8pr", {**DRIVE, "drive.phases": phases})
+    wear = study.wear()
+    rolled = study.roll(slip_angle=math.radians(2)).wear()
+    left, straight = wear.by_phase["left"], wear.by_phase["straight"]
+    assert set(wear.by_phase) == {"left", "straight"}
+    assert left[2] == pytest.approx(rolled.mean, rel=1e-9)
+    assert wear.distance == pytest.approx(left[0] + straight[0])
+    assert left[0] / straight[0] == pytest.approx(200 / 300)
+    assert wear.mean == pytest.approx((left[0] * left[2] + straight[0] * straight[2]) / wear.distance, rel=1e-12)
+    # The work of the phase is power times time.
+    assert left[1] == pytest.approx(rolled.power.sum() * 100, rel=1e-9)
+    assert float(wear.power.sum()) * 450 == pytest.approx(left[1] + straight[1], rel=1e-3)
+    # Exponent 1: the volume is in proportion to the energy of a metre.
+    assert wear.volume_per_km == pytest.approx(
+        5e-12 * float((wear.energy * wear.areas).sum()) * 1e3 / wear.travel, rel=0.01
+    )
+
+
+@pytest.mark.fast
+@pytest.mark.parametrize("name", [STUDY, "truck-295-80r22.5"])
+def test_shipped_treads_wear(name: str) -> None:
+    assert tread_table(tf.study(name)).depth == pytest.approx(5e-9)
+
+
+@pytest.mark.fast
+def test_the_wear_of_a_drive_needs_rolling() -> None:
+    with pytest.raises(InputError, match=r"needs boundaries\.sliding = 'rolling'"):
+        tf.study(STUDY).wear()
 
 
 @pytest.mark.fast

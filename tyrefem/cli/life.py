@@ -36,7 +36,7 @@ def life(
     ] = False,
     sensitivity: Annotated[
         bool,
-        typer.Option(help="Compute the shortest life for other speed, load, pressure and ambient: four more runs."),
+        typer.Option(help="Compute the shortest life for other speed, load, pressure, ambient and slip: a run each."),
     ] = True,
     pictures: Annotated[bool, typer.Option(help="Draw the PNG map.")] = True,
     vtk: Annotated[bool, typer.Option(help="Write the map for ParaView, life.vtu.")] = True,
@@ -52,7 +52,7 @@ def life(
     from tyrefem.api import study as load
     from tyrefem.fatigue.life import check
     from tyrefem.fatigue.life import life as life_of
-    from tyrefem.fatigue.sensitivity import SHIFTS, shifts
+    from tyrefem.fatigue.sensitivity import shifts, shifts_of
     from tyrefem.reports.life import FILES, words, write_files
 
     given = None if temperature is None else _temperature(temperature)
@@ -67,7 +67,7 @@ def life(
         write_files(computed, folder, pictures=pictures, vtk=vtk)
         moved: tuple[LifeShift, ...] = ()
         if sensitivity:
-            with progress(f"{loaded.name}: {', '.join(SHIFTS)}", quiet=quiet or as_json):
+            with progress(f"{loaded.name}: {', '.join(shifts_of(loaded))}", quiet=quiet or as_json):
                 moved = shifts(computed)
             write_files(computed, folder, moved, pictures=False, vtk=False)
     if as_json:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -32,13 +33,21 @@ OPTIONS = {
     "distance": ("--distance", "m"),
 }
 
+#: What is meant without options, SI.
+DEFAULTS = {"slip_angle": math.radians(0.5), "camber": 0.0, "friction": 1.0}
+
 
 def wear(
     study: StudyArgument,
-    slip_angle: Annotated[str, typer.Option(help="Slip angle, '0.5 deg': a mean of ordinary driving.")] = "0.5 deg",
+    slip_angle: Annotated[
+        str | None,
+        typer.Option(
+            help="Slip angle; default: 0.5 deg, a mean of ordinary driving, or that of the drive (see below)."
+        ),
+    ] = None,
     slip: Annotated[str | None, typer.Option(help="Longitudinal slip, '1 %', positive drives; default: free.")] = None,
-    camber: Annotated[str, typer.Option(help="Camber, '1 deg'.")] = "0 deg",
-    friction: Annotated[str, typer.Option(help="Coefficient of friction.")] = "1.0",
+    camber: Annotated[str | None, typer.Option(help="Camber, '1 deg'.")] = None,
+    friction: Annotated[str | None, typer.Option(help="Coefficient of friction; default: 1.0.")] = None,
     distance: Annotated[
         str | None, typer.Option(help="Write the section that is worn by this distance, '20000 km'.")
     ] = None,
@@ -50,11 +59,15 @@ def wear(
     changes: SetOption = None,
     case: CaseOption = None,
 ) -> None:
-    """Wear of the tread per 1000 km by ring, from the friction power of the rolling tyre; the worn section."""
+    """Wear of the tread per 1000 km by ring, from the friction power of the rolling tyre; the worn section.
+
+    Slip is that of the options. Without them, a study with boundaries.sliding = 'rolling' wears by its drive.
+    """
     from tyrefem.api import study as load
     from tyrefem.mechanics.rolling.roll import NEEDS, roll
     from tyrefem.reports.wear import FILES, words, write_files
-    from tyrefem.wear.ring_wear import ring_wear, tread_table
+    from tyrefem.wear.drive_wear import drive_wear
+    from tyrefem.wear.ring_wear import RingWear, ring_wear, tread_table
     from tyrefem.wear.worn_section import worn_section
 
     texts = {"slip_angle": slip_angle, "slip": slip, "camber": camber, "friction": friction, "distance": distance}
@@ -67,21 +80,23 @@ def wear(
     loaded = load(study, settings(changes), case)
     NEEDS.check(loaded)
     tread_table(loaded)
+    of_drive = loaded.card.boundaries.sliding.rolls and not given
+    given = {**DEFAULTS, **given}
     warn(loaded.warnings)
     with results_folder(out or Path("results") / f"{loaded.name}-wear", "wear", FILES, force=force) as folder:
         try:
             with progress(f"{loaded.name}: rolling", quiet=quiet or as_json):
-                rolled = roll(loaded, **given)
-            worn_off = ring_wear(rolled)
+                rolled = None if of_drive else roll(loaded, **given)
+                worn_off: RingWear = drive_wear(loaded) if rolled is None else ring_wear(rolled)
             worn = worn_section(loaded, worn_off, kilometres) if distance is not None else None
         except InputError as error:
             option = OPTIONS.get(error.field or "", ("",))[0]
             raise InputError(error.message, field=option) if option and not error.file else error from None
-        write_files(rolled, worn_off, folder, worn, pictures=pictures)
+        write_files(loaded, rolled, worn_off, folder, worn, pictures=pictures)
     if as_json:
         print_file(folder / "summary.json")
         return
-    typer.echo(words(rolled, worn_off))
+    typer.echo(words(loaded, rolled, worn_off))
     typer.echo(f"results in {folder}")
 
 

@@ -13,6 +13,8 @@ from tyrefem.mechanics.finite_elements import FiniteElements
 from tyrefem.mechanics.footprint.elements import WheelAngles
 from tyrefem.mechanics.footprint.footprint import Footprint
 from tyrefem.mechanics.footprint.strain_harmonics import StrainHarmonics
+from tyrefem.mechanics.rolling.rolled_footprint import RolledFootprint
+from tyrefem.mechanics.rolling.turning import cycle_of
 from tyrefem.mechanics.solid.compounds import determinant
 
 Array = NDArray[np.float64]
@@ -28,6 +30,8 @@ MIRROR = np.array([1.0, 1.0, 1.0, 1.0, -1.0, -1.0])
 @dataclass(frozen=True, eq=False)
 class MatrixCycle:
     """What the rubber of every point bears: the compound of a cord layer at the strain of the layer.
+
+    A tyre that rolls with friction is strained differently before and behind its footprint.
 
     The state at an angle is V F_0, F_0 that of inflation and V the stretch of the rolling tyre beyond it: sqrt(1 + 2 E)
     with Green's strain E in large motion, 1 + e with the linear strain e in linear motion. Rotations are left out:
@@ -51,7 +55,19 @@ class MatrixCycle:
     def angles(self) -> WheelAngles:
         """Equal steps from the middle of the footprint to the opposite side."""
         footprint = self.footprint
-        return WheelAngles(footprint.pressing.harmonics.elements, footprint.harmonics)
+        highest = footprint.lagging.harmonics if isinstance(footprint, RolledFootprint) else footprint.harmonics
+        return WheelAngles(footprint.pressing.harmonics.elements, highest)
+
+    @property
+    def _one_sided(self) -> bool:
+        """True if both sides of the footprint are mirror images."""
+        return not isinstance(self.footprint, RolledFootprint)
+
+    @functools.cached_property
+    def _linear_angles(self) -> Array:
+        """(m,) rad, the opposite side last: of half a revolution, or of a whole one."""
+        half = self.angles.angles
+        return half if self._one_sided else np.concatenate([-half[:0:-1], half])
 
     @functools.cached_property
     def _inflated(self) -> Array:
@@ -60,7 +76,7 @@ class MatrixCycle:
 
     @functools.cached_property
     def _strains(self) -> StrainHarmonics:
-        return StrainHarmonics(self.footprint)
+        return StrainHarmonics(self.footprint) if self._one_sided else cycle_of(self.footprint)
 
     @functools.cached_property
     def _at_nodes(self) -> tuple[Array, Array]:
@@ -81,7 +97,7 @@ class MatrixCycle:
     def _stretch(self, elements: Indices) -> tuple[Array, Array]:
         """V (e, q, m, 3, 3) and the change of volume det V."""
         if self.footprint.balanced is None:
-            linear = np.moveaxis(self._strains.strain(self.angles.angles, elements), 0, -1)
+            linear = np.moveaxis(self._strains.strain(self._linear_angles, elements), 0, -1)
             linear[..., 3:] /= 2
             volume = 1 + linear[..., :3].sum(axis=-1)
             values, vectors = np.linalg.eigh(np.eye(3) + tensors(linear))
@@ -124,7 +140,8 @@ class MatrixCycle:
             stress[..., :3] += p[..., None]
             stresses.append(stress)
             strains.append(six(_spectral(logs, turned)))
-        return CrackingEnergy(_round(*stresses), _round(*strains), before=STEPS)
+        rounded = _round if self._one_sided else _once_round
+        return CrackingEnergy(rounded(*stresses), rounded(*strains), before=STEPS)
 
 
 def _spectral(values: Array, vectors: Array) -> Array:
@@ -136,4 +153,10 @@ def _round(before: Array, half: Array) -> Array:
     """(points, times, 6): up to the opposite side, forward over the mirrored half to the footprint, and back."""
     opposite_to_middle = half[:, :, ::-1] * MIRROR
     path = np.concatenate([before, opposite_to_middle, half[:, :, 1:]], axis=2)
+    return np.asarray(path.reshape(-1, *path.shape[2:]))
+
+
+def _once_round(before: Array, whole: Array) -> Array:
+    """(points, times, 6): up to the opposite side, and from there backwards, as rubber runs, to it again."""
+    path = np.concatenate([before, whole[:, :, ::-1]], axis=2)
     return np.asarray(path.reshape(-1, *path.shape[2:]))

@@ -1,4 +1,4 @@
-"""How speed, load, pressure and ambient temperature shift the shortest life."""
+"""How speed, load, pressure, ambient temperature and slip shift the shortest life."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from tyrefem.fatigue.life import LifeData, life
 from tyrefem.inputs.changes import scaled
+from tyrefem.inputs.drive import SLIPS
 from tyrefem.quantity import parse
 
 if TYPE_CHECKING:
@@ -19,9 +20,10 @@ SHIFTS: dict[str, tuple[str, tuple[str, ...]]] = {
     "load": ("load + 10 %", ("load", "deflection")),
     "pressure": ("pressure - 10 %", ("pressure",)),
     "ambient": ("ambient + 10 K", ("ambient",)),
+    "slip": ("slip, torque, slip angle, camber + 10 %", SLIPS),
 }
 #: Factors of numbers; the ambient's step, K.
-FACTORS = {"speed": 1.1, "load": 1.1, "pressure": 0.9}
+FACTORS = {"speed": 1.1, "load": 1.1, "pressure": 0.9, "slip": 1.1}
 WARMER = 10.0
 #: Where a drive does not give the ambient temperature.
 AMBIENT = "25 degC"
@@ -38,16 +40,27 @@ class LifeShift:
     temperature: float
 
 
+def shifts_of(study: StudyData) -> tuple[str, ...]:
+    """The changes that mean something in a study: slip only if its tyre rolls with friction, and slips.
+
+    >>> from tyrefem import study
+    >>> shifts_of(study("nasa-22x5.5-8pr"))
+    ('speed', 'load', 'pressure', 'ambient')
+    """
+    slips = study.card.boundaries.sliding.rolls and any(phase.slides for phase in study.card.drive.phases)
+    return tuple(name for name in SHIFTS if name != "slip" or slips)
+
+
 def shifts(
-    before: LifeData, which: tuple[str, ...] = tuple(SHIFTS), progress: Callable[[float], None] | None = None
+    before: LifeData, which: tuple[str, ...] | None = None, progress: Callable[[float], None] | None = None
 ) -> tuple[LifeShift, ...]:
-    """The shortest life of the study under each change of `SHIFTS` alone, all else as written.
+    """The shortest life of the study under each change alone, all else as written; by default those of `shifts_of`.
 
     Without a run (a life at a given temperature) the ambient's step is added to that temperature, and speed changes
     nothing but is told.
     """
     made = []
-    for name in which:
+    for name in shifts_of(before.study) if which is None else which:
         study = before.study.replace(changed(before.study, name))
         temperature = before.temperature
         if temperature is not None and name == "ambient":

@@ -10,11 +10,13 @@ import numpy as np
 from tyrefem.output import atomic_folder, versions, write_json
 from tyrefem.quantity import written
 from tyrefem.reports.figures.style import FONT, add_axes, figure, line_style, png, tidy, title
+from tyrefem.wear.drive_wear import DriveWear
 from tyrefem.wear.worn_section import WornProfile
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from tyrefem.inputs.study import StudyData
     from tyrefem.mechanics.rolling.roll import RolledStudy
     from tyrefem.wear.ring_wear import RingWear
 
@@ -27,21 +29,28 @@ MILLIMETRES = 1e-6
 
 
 def write_files(
-    rolled: RolledStudy, wear: RingWear, folder: Path, worn: dict[str, Any] | None = None, *, pictures: bool = True
+    study: StudyData,
+    rolled: RolledStudy | None,
+    wear: RingWear,
+    folder: Path,
+    worn: dict[str, Any] | None = None,
+    *,
+    pictures: bool = True,
 ) -> None:
-    """``wear.csv``, ``summary.json``; ``wear.png``; ``worn-section.toml`` if there is a worn section."""
+    """``wear.csv``, ``summary.json``; ``wear.png``; ``worn-section.toml`` if there is a worn section.
+
+    ``rolled``: the one state of rolling; None: ``wear`` is that of the study's drive.
+    """
     import tomli_w
 
-    section = rolled.study.section
+    section = study.section
     with atomic_folder(folder) as temporary:
         rings_table(wear).to_csv(temporary / "wear.csv", index=False, float_format="%.8g", lineterminator="\n")
-        write_json(summary(rolled, wear), temporary / "summary.json")
+        write_json(summary(study, rolled, wear), temporary / "summary.json")
         if worn is not None:
             (temporary / "worn-section.toml").write_text(tomli_w.dumps(written(worn)), encoding="utf-8")
         if pictures:
-            (temporary / "wear.png").write_bytes(
-                png(wear_figure(wear, WornProfile.of(section, wear), rolled.study.title))
-            )
+            (temporary / "wear.png").write_bytes(png(wear_figure(wear, WornProfile.of(section, wear), study.title)))
 
 
 def rings_table(wear: RingWear) -> Any:
@@ -60,24 +69,42 @@ def rings_table(wear: RingWear) -> Any:
     )
 
 
-def summary(rolled: RolledStudy, wear: RingWear) -> dict[str, Any]:
+def summary(study: StudyData, rolled: RolledStudy | None, wear: RingWear) -> dict[str, Any]:
     """Contents of ``summary.json``."""
-    state, study = rolled.state, rolled.study
     density = study.materials["tread"].density.at(study.card.drive.initial)
     return {
         "study": study.name,
         "title": study.title,
         "about": ABOUT,
-        "slip_angle_rad": state.motion.slip_angle,
-        "slip": rolled.slip,
-        "camber_rad": rolled.wheel.rolling.camber,
-        "force_N": state.force,
-        "friction_power_W": state.friction_power,
+        **(_drive(wear) if rolled is None else _state(rolled)),
         "mean_wear_mm_per_1000_km": wear.mean / MILLIMETRES,
         "most_wear_mm_per_1000_km": float(wear.depth_per_km.max()) / MILLIMETRES,
         "mass_mg_per_km": wear.volume_per_km * density * 1e6,
         "card": wear.table.model_dump(),
         "versions": versions(),
+    }
+
+
+def _state(rolled: RolledStudy) -> dict[str, Any]:
+    state = rolled.state
+    return {
+        "slip_angle_rad": state.motion.slip_angle,
+        "slip": rolled.slip,
+        "camber_rad": rolled.wheel.rolling.camber,
+        "force_N": state.force,
+        "friction_power_W": state.friction_power,
+    }
+
+
+def _drive(wear: RingWear) -> dict[str, Any]:
+    assert isinstance(wear, DriveWear)
+    return {
+        "friction_power_W": float(wear.power.sum()),
+        "distance_m": wear.distance,
+        "phases": [
+            {"name": name, "distance_m": way, "friction_work_J": work, "mean_wear_mm_per_1000_km": depth / MILLIMETRES}
+            for name, (way, work, depth) in wear.by_phase.items()
+        ],
     }
 
 
@@ -97,16 +124,27 @@ def wear_figure(wear: RingWear, profile: WornProfile, heading: str) -> Figure:
     return drawn
 
 
-def words(rolled: RolledStudy, wear: RingWear) -> str:
+def words(study: StudyData, rolled: RolledStudy | None, wear: RingWear) -> str:
     """The wear as text."""
-    numbers, state = summary(rolled, wear), rolled.state
+    numbers = summary(study, rolled, wear)
     worst = int(np.argmax(wear.depth_per_km))
-    return "\n".join(
-        [
-            rolled.study.title,
+    if rolled is None:
+        lines = [
+            f"  {phase['name']}: {phase['distance_m'] / 1e3:.4g} km, friction {phase['friction_work_J'] / 1e3:.4g} kJ, "
+            f"{phase['mean_wear_mm_per_1000_km']:.3g} mm per 1000 km"
+            for phase in numbers["phases"]
+        ]
+    else:
+        state = rolled.state
+        lines = [
             f"  slip angle {np.degrees(state.motion.slip_angle):.3g} deg, slip {100 * rolled.slip:.3g} %: forces "
             f"{state.force[0]:.0f}, {state.force[1]:.0f}, {state.force[2]:.0f} N; friction "
-            f"{state.friction_power:.1f} W",
+            f"{state.friction_power:.1f} W"
+        ]
+    return "\n".join(
+        [
+            study.title,
+            *lines,
             f"  wear {numbers['mean_wear_mm_per_1000_km']:.3g} mm per 1000 km on average, "
             f"{numbers['most_wear_mm_per_1000_km']:.3g} at z = {wear.places[1, worst] * 1e3:.0f} mm; "
             f"{numbers['mass_mg_per_km']:.3g} mg/km",

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 #: Numbers that change from state to state: of each ring, and of the whole tread.
-CHANGING = ("work", "share", "friction", "sliding", "rolling")
+CHANGING = ("work", "share", "friction", "sliding", "rolling", "travel")
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,10 +31,10 @@ class FrictionRings(Brief):
     work : (m,) friction work over the distance travelled, J/m = N; its sum times the speed is the friction power.
     share : (m,) of a revolution in which a point of the ring is in contact.
     friction : horizontal force over load. sliding, rolling : nominal speeds of the tread over the road, and through the
-        footprint, over that of the wheel's centre.
+        footprint, over that of the wheel's centre. travel : m the wheel travels per radian of its turn.
 
     >>> rings = FrictionRings(np.array([[0.3, 0.3], [-0.01, 0.01]]), np.full(2, 0.02), np.array([30.0, -10.0]),
-    ...     np.full(2, 0.1), 0.5, 0.02, 1.0)
+    ...     np.full(2, 0.1), 0.5, 0.02, 1.0, 0.3)
     >>> rings.density.round(1).tolist(), float(round(rings.density @ rings.areas, 9)) == rings.total
     ([530.5, 0.0], True)
     """
@@ -46,6 +46,7 @@ class FrictionRings(Brief):
     friction: float
     sliding: float
     rolling: float
+    travel: float
 
     def _facts(self) -> Mapping[str, Any]:
         return {"rings": len(self.work), "friction work": f"{self.total:.4g} N"}
@@ -95,6 +96,7 @@ class FrictionRings(Brief):
             float(np.hypot(f_x, f_y) / f_z),
             float(np.hypot(slip * np.cos(angle), np.sin(angle))),
             float((1 + slip) * np.cos(angle)),
+            state.travel,
         )
 
 

@@ -1,0 +1,118 @@
+"""Wear of a tread over a drive whose phases roll with friction."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.errors import InputError
+from tyrefem.materials.wear import Wear
+from tyrefem.mechanics.cycle_schedule import CycleSchedule, cycle_schedule
+from tyrefem.wear.ring_wear import RingWear, tread_table
+
+if TYPE_CHECKING:
+    from tyrefem.inputs.study import StudyData
+    from tyrefem.mechanics.rolling.friction_rings import FrictionRings
+
+Array = NDArray[np.float64]
+#: Intervals of a phase; speed and state of each are those of its middle.
+INTERVALS = 32
+
+
+@dataclass(frozen=True, eq=False)
+class DriveWear(RingWear):
+    """Mean wear of the rings over a drive, by distance: sum of share_i times depth per km of state i.
+
+    ``power`` is the mean over the time, ``travel`` that of a revolution, ``spin`` such that ``travel`` fits the speed.
+
+    Parameters
+    ----------
+    states : wear in each solved state. shares : (states,) of the drive's distance. distance : m, of the drive.
+    by_phase : name -> (distance, m; friction work, J; mean depth per km, m).
+    """
+
+    states: tuple[RingWear, ...] = ()
+    shares: Array = field(default_factory=lambda: np.ones(0))
+    distance: float = 0.0
+    by_phase: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
+
+    @functools.cached_property
+    def depth_per_km(self) -> Array:
+        """(m,) depth worn per kilometre, m."""
+        return np.asarray(
+            sum(share * state.depth_per_km for share, state in zip(self.shares, self.states, strict=True))
+        )
+
+
+def drive_wear(study: StudyData) -> DriveWear:
+    """Wear of a study's tread over its drive, from the friction work of the rings in every phase.
+
+    Raises
+    ------
+    InputError : errors of `tread_table`; a law of sliding other than ``rolling``; a drive that does not roll.
+    """
+    table = tread_table(study)
+    if not study.card.boundaries.sliding.rolls:
+        message = "the wear of a drive needs boundaries.sliding = 'rolling'"
+        raise InputError(message, field="boundaries.sliding", file=study.file)
+    schedule = cycle_schedule(study)
+    distances = _distances(schedule)
+    total = sum(distances.values())
+    if not total > 0:
+        raise InputError("the tyre never rolls under load: no wear", field="drive", file=study.file)
+    rings = {place: _rings(schedule, place) for place in distances}
+    states = {place: _state(friction, table) for place, friction in rings.items()}
+    by_phase = {}
+    for number, phase in enumerate(study.card.drive.phases):
+        ours = {place: distance for place, distance in distances.items() if place[0] == number}
+        way = sum(ours.values())
+        if way > 0:
+            work = sum(distance * rings[place].total for place, distance in ours.items())
+            depth = sum(distance * states[place].mean for place, distance in ours.items()) / way
+            by_phase[phase.name] = (way, work, depth)
+    shares = np.array([distance / total for distance in distances.values()])
+    first = next(iter(states.values()))
+    turns = sum(share / state.travel for share, state in zip(shares, states.values(), strict=True))
+    work_per_metre = np.sum(
+        [share * friction.work for share, friction in zip(shares, rings.values(), strict=True)], axis=0
+    )
+    speed = total / study.card.drive.end
+    return DriveWear(
+        first.places, first.widths, work_per_metre * speed, 2 * np.pi * speed * turns, 1 / turns, table,
+        tuple(states.values()), shares, total, by_phase,
+    )  # fmt: skip
+
+
+def _distances(schedule: CycleSchedule) -> dict[tuple[int, int], float]:
+    """(phase, knot) of a state with friction -> m that the wheel travels in it; shared between two in a ramp."""
+    distances: dict[tuple[int, int], float] = {}
+    for start, phase in zip(schedule.drive.starts, schedule.drive.phases, strict=True):
+        step = phase.duration / INTERVALS
+        for time in start + step * (np.arange(INTERVALS) + 0.5):
+            way = schedule.motion(float(time)).speed * step
+            for number, knot, weight in schedule.weights(float(time)):
+                if way * weight > 0 and _friction(schedule, (number, knot)) is not None:
+                    distances[number, knot] = distances.get((number, knot), 0.0) + way * weight
+    return distances
+
+
+def _friction(schedule: CycleSchedule, place: tuple[int, int]) -> FrictionRings | None:
+    cycle: Any = schedule.cycles[place[0]][place[1]]
+    return getattr(cycle, "friction", None)
+
+
+def _rings(schedule: CycleSchedule, place: tuple[int, int]) -> FrictionRings:
+    friction = _friction(schedule, place)
+    assert friction is not None
+    return friction
+
+
+def _state(friction: FrictionRings, table: Wear) -> RingWear:
+    """Wear of a state at 1 m/s: the energy of a passing does not depend on the speed."""
+    travel = friction.travel
+    return RingWear(friction.places, friction.widths, friction.work, 1 / travel, 2 * np.pi * travel, table)
