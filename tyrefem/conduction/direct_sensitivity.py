@@ -191,11 +191,15 @@ def _identity(balance: HeatBalance, load: Load) -> tuple[Any, ...]:
 
 def _heat_of_films(films: list[FilmLoad], shares: Array, t: float, y: State) -> Array:
     """(n_parameters, n_dofs): remainder of films of one surface and sink, weighted with their ``shares``."""
-    s = films[0].s
+    s, T = films[0].s, films[0].s.trace @ y.u[films[0].s.dofs]
+    parts = [film.excess(t, y) for film in films]
+    if all(isinstance(value, float) for part in parts for value in part):
+        even, slope = shares.T @ np.array(parts)[:, 0], shares.T @ np.array(parts)[:, 1]
+        return np.asarray(np.outer(even, s.load(1.0)) - np.outer(slope, s.trace_t @ (s.weight * T)))
     flux, more = np.empty((2, len(films), s.weight.size))
-    for number, film in enumerate(films):
-        flux[number], more[number] = film.excess(t, y)
-    q = shares.T @ flux - (shares.T @ more) * (s.trace @ y.u[s.dofs])
+    for number, part in enumerate(parts):
+        flux[number], more[number] = part
+    q = shares.T @ flux - (shares.T @ more) * T
     return np.asarray((s.trace_t @ (q * s.weight).T).T)
 
 

@@ -266,7 +266,7 @@ def run_case(
         is_identifiable = identifiable(evaluations, known, case)
     model = other_model(study, case) if data_model == STRUCTURAL else None
     data = measured(study, case, mesh=mesh, model=model)
-    diagnosis = diagnose(study, data, largest=2, known=known, rerun=False, looks=1, reduced=reduced)
+    diagnosis = diagnose(study, data, largest=2, known=known, rerun=False, verdict_only=True, looks=1, reduced=reduced)
     parts = None if model is None else model.to_dict(mesh_of(data_model) if mesh is None else mesh)
     return BlindOutcome(case, is_identifiable, outcome_row(diagnosis), parts)
 

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from functools import cached_property
+from dataclasses import dataclass, field
+from functools import cached_property, partial
 from itertools import pairwise
 
 import numpy as np
@@ -53,6 +53,8 @@ class FixedStepRun:
     values: Array
     reservoirs: Array
     every: float
+    #: Temperatures on `grid` by point, shared with the same simulation as measured by other sensors.
+    _histories: Cache[Array] = field(default_factory=lambda: Cache(128), repr=False)
 
     def as_measured_by(self, study: StudyData) -> FixedStepRun:
         """The same temperatures, measured by the sensors of another study."""
@@ -82,14 +84,28 @@ class FixedStepRun:
         """(n_sensors, 2) m: places of the sensors, kept within the straight-sided elements."""
         return sensor_points(self.study, self.tyre)
 
+    def _at_points(self, points: Array) -> Array:
+        """(n_grid, n_points) degC at points (n_points, 2), m."""
+        keys = [Content.of(point) for point in points]
+        missing = [number for number, key in enumerate(keys) if key not in self._histories]
+        computed = dict(zip(missing, self._computed(points[missing]).T, strict=True)) if missing else {}
+
+        def column(number: int) -> Array:
+            return computed[number] if number in computed else self._computed(points[[number]])[:, 0]
+
+        columns = [self._histories.get(key, partial(column, number)) for number, key in enumerate(keys)]
+        return np.column_stack(columns)
+
+    def _computed(self, points: Array) -> Array:
+        history = (located(self.tyre.problem.operators, points).value() @ self.values[::2].T).T
+        return on_grid(self.times[::2], history, self.starts, self.grid, ends_only=True)
+
     @cached_property
     def readings(self) -> dict[str, Array]:
         """Sensor -> degC on `grid`, contained air and rim included."""
         at_sensors = None
         if self.study.sensors:
-            operator = located(self.tyre.problem.operators, self.sensor_points).value()
-            history = (operator @ self.values[::2].T).T
-            at_sensors = on_grid(self.times[::2], history, self.starts, self.grid, ends_only=True)
+            at_sensors = self._at_points(self.sensor_points)
         names = list(self.tyre.problem.reservoirs)
         lumped = {name: self.dense(self.reservoirs[:, names.index(name)]) for name in (GAS, RIM) if name in names}
         return read(self.study, self.grid, at_sensors, lumped)
@@ -191,6 +207,10 @@ class ReadingSensitivities:
         slopes = {sensor: np.zeros((len(base.grid), len(self.unknowns))) for sensor in sensors}
         for sensor in sensors:
             slopes[sensor][:, list(self.failed)] = np.nan
+        measured = [other for other in self.again.values() if other.values is base.values]
+        if measured and base.study.sensors:
+            # One search in the mesh for the places of all displaced sensors.
+            base._at_points(np.unique(np.vstack([other.sensor_points for other in measured]), axis=0))
         for column, other in self.again.items():
             for sensor in sensors:
                 change = other.readings[sensor] - base.readings[sensor]

@@ -21,7 +21,7 @@ from tyrefem.diagnose.reduced_forward import Modes, ReducedDrive, modes_of
 from tyrefem.diagnose.sampling import DriveSampling
 from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
 from tyrefem.diagnose.source_responses import source_responses
-from tyrefem.diagnose.strain_law_study import STRETCHES, by_law, heat_along
+from tyrefem.diagnose.strain_law_study import heats_by_law, readings_by_law
 from tyrefem.diagnose.unknowns import Unknown, with_values
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
@@ -31,6 +31,7 @@ from tyrefem.reduced.model import NotReducibleError
 from tyrefem.simulation.rolling_tyre import RollingTyre
 from tyrefem.simulation.run import run
 from tyrefem.simulation.surroundings import GAS, RIM
+from tyrefem.variants.answer_store import study_digest
 
 Array = NDArray[np.float64]
 Values = Mapping[Unknown, float]
@@ -39,6 +40,8 @@ Places = tuple[tuple[tuple[float, float], ...], ...]
 #: Status of a reduced model at a point: its readings hold; it cannot represent these effects; it has no answer at this
 #: point (an impossible tyre, for example).
 FOLLOWED, NOT_FOLLOWED, NO_ANSWER = 0, 1, 2
+#: Simulations at x = 0, by study, drive and readings: all diagnoses of one layout share them.
+_BASES: Cache[FixedStepRun] = Cache(size=8)
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,8 +150,13 @@ class ForwardModel(Brief):
         """All drives share the mesh and the operators of the drive that was simulated first."""
         first = next((other for other in range(len(self.drives)) if other in self._bases), None)
         like = None if first is None else self.base(first).tyre
-        driven = self.driven(self.coarse, number)
-        return fixed_step_run(driven, like, self.nearby(driven), every=self.settings.readings_every)
+        driven, every = self.driven(self.coarse, number), self.settings.readings_every
+
+        def compute() -> FixedStepRun:
+            return fixed_step_run(driven, like, self.nearby(driven), every=every)
+
+        # Strain cycles in a folder of worker processes last as long as these.
+        return compute() if self.folder else _BASES.get((study_digest(driven), every), compute)
 
     def nearby(self, driven: StudyData) -> NearbyCycles | None:
         """Strain cycles near those of the coarse study at a drive; None if the strain law is not by finite elements."""
@@ -253,25 +261,19 @@ class ForwardModel(Brief):
         ``level``: ln of a factor on the heat by the other law. ``mesh``: size of the elements for both; default: those
         of the fit.
         """
-        base = self.base(number)
-        try:
-            if mesh and mesh != self.settings.mesh_size:
-                base = fixed_step_run(_meshed(base.study, mesh), every=base.every)
-            other = fixed_step_run(by_law(base.study, law, level), every=base.every)
-        except InputError:
+        remeshed = mesh if mesh != self.settings.mesh_size else ""
+        pair = readings_by_law(self.base(number), law, level, remeshed)
+        if pair is None:
             return np.full(self.drives[number].size, np.nan)
-        return self.blocks(number, other.grid, other.readings) - self.blocks(number, base.grid, base.readings)
+        stated, other = (self.blocks(number, *history) for history in pair)
+        return other - stated
 
     def heat_by_law(self, number: int, law: str, mesh: str) -> Array:
         """(2, n) W in equal stretches from crown to bead as the tyre begins to turn: the study's law, another law.
 
         NaN if the law cannot run. ``mesh``: size of the elements.
         """
-        driven = _meshed(self.base(number).study, mesh)
-        try:
-            return np.array([heat_along(RollingTyre(study)) for study in (driven, by_law(driven, law, 0.0))])
-        except InputError:
-            return np.full((2, STRETCHES), np.nan)
+        return heats_by_law(self.base(number).study, law, mesh)
 
     def simulate(self, number: int, values: Values) -> FixedStepRun:
         """Fixed-step simulation of a drive with unknowns at ``values``; it has temperatures at any place."""
@@ -319,7 +321,7 @@ class ForwardModel(Brief):
         here = self.with_values(base.study, at, base.study)
         there = [
             (
-                self.with_values(base.study, {**at, unknown: at.get(unknown, 0.0) + unknown.step}, base.study),
+                self.with_values(base.study, {**at, unknown: at.get(unknown, 0.0) + unknown.step}, here),
                 unknown.measures or not unknown.acts_in(base.study.card.run),
             )
             for unknown in unknowns
@@ -380,11 +382,6 @@ class ForwardModel(Brief):
             columns = list(alone)
             derivatives = _tangents(base, list(alone.values()))
         return ReadingSensitivities(base, tuple(unknowns), again, columns, derivatives, failed)
-
-
-def _meshed(study: StudyData, size: str) -> StudyData:
-    """The study with another size of the elements; a mesh from a file stays."""
-    return study if study.card.mesh.file is not None else study.replace({"mesh.size": size})
 
 
 def _acting(study: StudyData, values: Values) -> Values:

@@ -55,6 +55,7 @@ class SimulationWork:
     known: Sequence[DriveResponse] | None = None
     rerun: bool = True
     store: ProgressStore | None = None
+    verdict_only: bool = False
 
     def look(self, number: int) -> SimulationWork:
         """The options for the look with this number; 0 is the first look."""
@@ -96,6 +97,7 @@ class DiagnosisOptions(TypedDict, total=False):
     progress: Tick | None
     known: Sequence[DriveResponse] | None
     rerun: bool
+    verdict_only: bool
     store: ProgressStore | None
     effects: str | Path | None
     calibration: str | Path | None

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
+from tyrefem.cache import Cache
 from tyrefem.diagnose.candidates import Members
 from tyrefem.diagnose.energy_shapes import energy_shapes
 from tyrefem.diagnose.evaluations import Evaluations
@@ -22,9 +23,12 @@ from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
 from tyrefem.diagnose.unknowns import Unknown, base_unknowns, sensor_unknowns
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
+from tyrefem.variants.answer_store import study_digest
 
 Array = NDArray[np.float64]
 Tick = Callable[[str, int, int], None]
+#: Responses of the drives of a layout, by study and unknowns: some 20 MB for four drives.
+_RESPONSES: Cache[tuple[DriveResponse, ...]] = Cache(size=2)
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,7 +136,19 @@ def unknowns_of(
 def responses(
     evaluations: Evaluations, unknowns: tuple[Unknown, ...], tick: Tick | None = None
 ) -> tuple[DriveResponse, ...]:
-    """The response of every drive: the costly part of a diagnosis, independent of data."""
+    """The response of every drive: the costly part of a diagnosis, independent of data.
+
+    Diagnoses of one layout share them, unless they are stored for an interrupted diagnosis.
+    """
+    if evaluations.store is not None:
+        return _responses(evaluations, unknowns, tick)
+    model = evaluations.model
+    drives = tuple((drive.name, repr(drive.drive)) for drive in model.drives)
+    key = study_digest(model.study), drives, model.settings.of_simulations, unknowns
+    return _RESPONSES.get(key, lambda: _responses(evaluations, unknowns, tick))
+
+
+def _responses(evaluations: Evaluations, unknowns: tuple[Unknown, ...], tick: Tick | None) -> tuple[DriveResponse, ...]:
     model = evaluations.model
     count = len(model.drives)
     done = 0

@@ -15,7 +15,7 @@ from tyrefem.diagnose.fixed_step import FixedStepRun, ReadingSensitivities
 from tyrefem.diagnose.sampling import DriveSampling
 from tyrefem.diagnose.unknowns import Unknown, with_values
 from tyrefem.simulation.rolling_tyre import RollingTyre
-from tyrefem.variants.answer_store import digest, effects_source, plain
+from tyrefem.variants.answer_store import study_digest
 
 Array = NDArray[np.float64]
 #: Time steps per interval between two knots.
@@ -33,7 +33,7 @@ def source_responses(base: FixedStepRun, drive: DriveSampling, sources: Sequence
     `tangents_over_time`. The histories depend on no readings, so all diagnoses of one layout share them.
     """
     sensors = tuple(sampling.sensor for sampling in drive.sensors)
-    of_drive = digest([effects_source(), plain(base.study), base.every]), sensors, Content.of(knots)
+    of_drive = study_digest(base.study), base.every, sensors, Content.of(knots)
     missing = [source for source in sources if (*of_drive, source) not in _HISTORIES]
     computed = _histories(base, sensors, missing, knots)
 

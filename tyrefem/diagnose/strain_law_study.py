@@ -5,13 +5,19 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.cache import Cache
 from tyrefem.diagnose.energy_shapes import SHAPE
+from tyrefem.diagnose.fixed_step import FixedStepRun, fixed_step_run
+from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
 from tyrefem.mechanics.strain_laws import strain_laws
 from tyrefem.quantity import parse
 from tyrefem.simulation.rolling_tyre import RollingTyre
+from tyrefem.variants.answer_store import study_digest
 
 Array = NDArray[np.float64]
+#: Times of the readings, s, and sensor -> degC.
+History = tuple[Array, dict[str, Array]]
 #: Equal stretches of the meridian between crown and bead in which heat is compared.
 STRETCHES = 12
 #: Mesh for a strain law by finite elements in place of the study's; the study's mesh corrects its fits at x = 0.
@@ -20,6 +26,9 @@ COARSE_MESH = "8 mm"
 LEVEL_SD = 0.5
 #: Temperature at which heat is compared, degC.
 WARM = 60.0
+#: Readings and heat by other laws, by study, law and mesh: all diagnoses of one layout share them. None: cannot run.
+_READINGS: Cache[tuple[History, History] | None] = Cache(size=64)
+_HEATS: Cache[Array] = Cache(size=16)
 
 
 def by_law(study: StudyData, law: str, level: float) -> StudyData:
@@ -65,3 +74,40 @@ def heat_along(tyre: RollingTyre) -> Array:
         stretch = np.minimum((np.abs(s) / section.line.length * STRETCHES).astype(int), STRETCHES - 1)
         np.add.at(watts, stretch, heat)
     return watts
+
+
+def readings_by_law(base: FixedStepRun, law: str, level: float, mesh: str = "") -> tuple[History, History] | None:
+    """Readings of a drive by its own strain law and by another one; None if it cannot run.
+
+    Parameters
+    ----------
+    level : ln of a factor on the heat by the other law. mesh : size of the elements for both; default: the drive's.
+    """
+
+    def compute() -> tuple[History, History] | None:
+        try:
+            stated = fixed_step_run(meshed(base.study, mesh), every=base.every) if mesh else base
+            other = fixed_step_run(by_law(stated.study, law, level), every=base.every)
+        except InputError:
+            return None
+        return (stated.grid, stated.readings), (other.grid, other.readings)
+
+    return _READINGS.get((study_digest(base.study), base.every, law, level, mesh), compute)
+
+
+def heats_by_law(study: StudyData, law: str, mesh: str) -> Array:
+    """(2, n) W along the meridian by the study's law and by another one, see `heat_along`; NaN if it cannot run."""
+
+    def compute() -> Array:
+        driven = meshed(study, mesh)
+        try:
+            return np.array([heat_along(RollingTyre(each)) for each in (driven, by_law(driven, law, 0.0))])
+        except InputError:
+            return np.full((2, STRETCHES), np.nan)
+
+    return _HEATS.get((study_digest(study), law, mesh), compute)
+
+
+def meshed(study: StudyData, size: str) -> StudyData:
+    """The study with another size of the elements; a mesh from a file stays."""
+    return study if study.card.mesh.file is not None else study.replace({"mesh.size": size})

@@ -83,6 +83,7 @@ def diagnose(study: StudyData, table: Table | None = None, **options: Unpack[Dia
     workers : number of processes. progress : called with (description, number of the step, number of steps).
     known : responses of the runs' drives (see `responses`), for many diagnoses of one layout.
     rerun : run the amended study on its mesh at the end; otherwise ``after`` is the prediction of the fit.
+    verdict_only : leave out what follows from a verdict: the law of the missing heat, and the next experiment.
     effects : folder with further effects, as ``TYREFEM_EFFECTS`` names them; they stay in the catalogue afterwards.
     store : store of finished simulations, from which an interrupted diagnosis continues.
     calibration : folder or ``calibration.json`` of ``tyrefem isolability --calibrate`` for this layout; the first look
@@ -179,10 +180,10 @@ def _look(
         change = changes(residuals, values, sd, missing_unknowns)
         work.tick("running the amended study")
         after = _after(residuals, evaluations, change if work.rerun else None, values)
-        law = _law(residuals, evaluations, ranking, work)
+        law = None if work.verdict_only else _law(residuals, evaluations, ranking, work)
         signatures = () if law is None else law_signatures(residuals, law, candidates)
         further: Mapping[str, Any] = {}
-        if ranking.judgement.verdict == CONFOUNDED:
+        if ranking.judgement.verdict == CONFOUNDED and not work.verdict_only:
             work.tick("ranking next experiments")
             further = next_experiment(evaluations.model, ranking.judgement, ranking.fit_of)
         trials: tuple[LawTrial, ...] = ()

@@ -63,7 +63,8 @@ class Acting:
             base = base + effect.film_addend(self.tyre, film, t)
         for effect in self.at("film_factor"):
             base = base * effect.film_factor(self.tyre, film, t)
-        resistance = sum(effect.film_resistance(self.tyre, film, t) for effect in self.at("film_resistance"))
+        resisting = self.at("film_resistance")
+        resistance = sum(effect.film_resistance(self.tyre, film, t) for effect in resisting) if resisting else 0.0
         return base / (1 + base * resistance) if resistance else base
 
     def sink(self, sink: str, t: float, base: float) -> float:
@@ -78,6 +79,7 @@ class Acting:
         lasting = tuple(effect for effect in factors if effect.of_place)
         changing = tuple(effect for effect in factors if not effect.of_place)
         known = Cache[Array](PLACES)
+        latest: list[tuple[Array, Array]] = []
 
         def heat(x: Array, t: float, T: Array) -> Array:
             q = base(x, t, T)
@@ -85,7 +87,15 @@ class Acting:
                 q = q + effect.heat_addend(tyre, zone, x, t, T)
             for effect in changing:
                 q = q * effect.heat_factor(tyre, zone, x, t, T)
-            return q * known.get(Content.of(x), lambda: product(x, t, T)) if lasting else q
+            return q * of_place(x, t, T) if lasting else q
+
+        def of_place(x: Array, t: float, T: Array) -> Array:
+            # Solvers pass the same array of points in every call, so that the search by value is rarely needed.
+            points, factor = latest[0] if latest else (None, None)
+            if factor is None or points is not x:
+                factor = known.get(Content.of(x), lambda: product(x, t, T))
+                latest[:] = [(x, factor)]
+            return factor
 
         def product(x: Array, t: float, T: Array) -> Array:
             return np.asarray(math.prod(effect.heat_factor(tyre, zone, x, t, T) for effect in lasting))

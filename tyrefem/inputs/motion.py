@@ -5,16 +5,19 @@ Films, friction, heat sources, effects and reports take their speeds from a `Mot
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-from tyrefem.brief import Brief
+from tyrefem.brief import Brief, PickledFields
 from tyrefem.quantity import Ramp
 
 #: Share of its free speed below which a wheel counts as locked: the size of rounding errors.
 ROUNDING = 1e-12
+#: Number of times whose motion is kept.
+REMEMBERED = 512
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,7 +120,7 @@ def motion_at(drive: Phases, time: float, rolling_radius: float = math.nan) -> M
 
 
 @dataclass(frozen=True)
-class WheelMotion(Brief):
+class WheelMotion(Brief, PickledFields):
     """The motion of a loaded wheel as a function of time (s): ``motion(t).revolutions_per_second``.
 
     ``rolling_radius``: radius of the load case at a time, m.
@@ -131,4 +134,12 @@ class WheelMotion(Brief):
 
     def __call__(self, time: float) -> Motion:
         """The motion at a time."""
+        return self._known(time)
+
+    @functools.cached_property
+    def _known(self) -> Callable[[float], Motion]:
+        """The motion, kept for the latest times: all zones, films and effects use the same times."""
+        return functools.lru_cache(REMEMBERED)(self._at)
+
+    def _at(self, time: float) -> Motion:
         return motion_at(self.drive, time, self.rolling_radius(time))

@@ -67,7 +67,7 @@ class CycleSchedule(Brief, PickledFields):
         """Rolling radius of the load case at a time, m."""
         return self.mean(_rolling_radius, time)
 
-    @property
+    @functools.cached_property
     def motion(self) -> WheelMotion:
         """Motion of the wheel as a function of time, with the rolling radius of the load cases at that time."""
         return WheelMotion(self.drive, self.rolling_radius)

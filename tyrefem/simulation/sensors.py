@@ -21,7 +21,7 @@ def lagged(times: Array, temperatures: Array, lag: float) -> Array:
 
     Parameters
     ----------
-    times : (n,) s; temperatures : (n,) or (n, k) degC; lag : time constant, s.
+    times : (n,) s; temperatures : (n, ...) degC; lag : time constant, s.
 
     >>> t = np.linspace(0.0, 10.0, 11)
     >>> bool(abs(lagged(t, 2.0 * t, 1.0)[-1] - (20.0 - 2.0 * (1 - np.exp(-10.0)))) < 1e-12)
@@ -37,7 +37,8 @@ def lagged(times: Array, temperatures: Array, lag: float) -> Array:
     bands = np.ones((2, len(times)))
     bands[1, :-1] = -decay.reshape(-1)
     given = np.concatenate([temperatures[:1], after - before * decay])
-    return np.asarray(solve_banded((1, 0), bands, given, check_finite=False))
+    solution = solve_banded((1, 0), bands, given.reshape(len(given), -1), check_finite=False)
+    return np.asarray(solution).reshape(given.shape)
 
 
 def true_places(study: StudyData) -> dict[str, tuple[float, float]]:
@@ -70,10 +71,18 @@ def recorded(study: StudyData, times: Array, temperatures: ArrayLike) -> dict[st
     lags = {
         name: sensor.lag + sum(effect.lag_addend(name) for effect in effects) for name, sensor in study.sensors.items()
     }
-    read = {name: lagged(times, values[:, column], lags[name]) for column, name in enumerate(lags)}
+    # Sensors with one lag are read together.
+    of_lag: dict[float, list[str]] = {}
+    for name, lag in lags.items():
+        of_lag.setdefault(lag, []).append(name)
+    place = {name: column for column, name in enumerate(lags)}
+    read: dict[str, Array] = {}
+    for lag, names in of_lag.items():
+        together = lagged(times, values[:, [place[name] for name in names]], lag)
+        read |= {name: together[:, column] for column, name in enumerate(names)}
     late = sum(effect.clock() for effect in effects)
     readings = {}
-    for name in read:
+    for name in lags:
         channel = name
         for effect in effects:
             channel = effect.channel(channel)

@@ -92,6 +92,11 @@ def effects_source() -> str:
     return digest([Path(file).read_text(encoding="utf-8") for file in sorted(files)])
 
 
+def study_digest(study: StudyData) -> str:
+    """Digest of a study with its cards and its run, and of the effects' files."""
+    return digest([effects_source(), plain(study), study.card.run])
+
+
 def digest(content: Any) -> str:
     """SHA-256 of content that JSON can represent."""
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
