@@ -31,12 +31,14 @@ class ContactBody:
     turns : (k, 3, 3) turn from the axes of the point upstream to those of the point; None: all axes are parallel.
     before : (k,) share of the last step before the material of a point touched. In that share it moved over the road
         as in the step before; this does not count as slip. None: zero.
+    axes : (k, 3, 3) turn from the axes in which the compliance is given to those of each point; None: they are the same.
     """
 
     compliance: Array
     upstream: Indices
     turns: Array | None = None
     before: Array | None = None
+    axes: Array | None = None
 
     @property
     def n_points(self) -> int:
@@ -51,24 +53,48 @@ class ContactBody:
     def block(self, rows: Indices, columns: Indices) -> Array:
         """(n, 3, m, 3) compliance between some points."""
         every = np.arange(COMPONENTS)
-        return np.asarray(self.compliance[np.ix_(rows, every, columns, every)])
+        block = np.asarray(self.compliance[np.ix_(rows, every, columns, every)])
+        if self.axes is None:
+            return block
+        n, m = len(rows), len(columns)
+        turned = (self.axes[rows] @ block.reshape(n, COMPONENTS, m * COMPONENTS)).reshape(-1, m, COMPONENTS)
+        turned = turned.transpose(1, 0, 2) @ self.axes[columns].transpose(0, 2, 1)
+        return np.asarray(turned.transpose(1, 0, 2).reshape(n, COMPONENTS, m, COMPONENTS))
 
-    def slip_block(self, index: Indices) -> Array:
-        """(n, 2, n, 3) slip of a step at some points that may touch, per force on them, m/N."""
-        change = self._change_block(index, index)
+    @functools.cached_property
+    def local(self) -> Array:
+        """(k, 3, 3) compliance of each point under a force on itself, m/N."""
+        every = np.arange(self.n_points)
+        at = self.compliance[every, :, every, :]
+        return np.asarray(at if self.axes is None else self.axes @ at @ self.axes.transpose(0, 2, 1))
+
+    def slip_block(self, index: Indices, rows: Indices, block: Array) -> Array:
+        """(n, 2, n, 3) slip of a step at some points that may touch, per force on them, m/N.
+
+        ``block``: `block` of points ``rows``, in order, among them all of ``index``, and of the points ``index``.
+        """
+
+        def of_rows(wanted: Indices) -> Array:
+            at = np.minimum(np.searchsorted(rows, wanted), len(rows) - 1)
+            taken, others = block[at], np.flatnonzero(rows[at] != wanted)
+            if len(others):
+                taken[others] = self.block(wanted[others], index)
+            return np.asarray(taken)
+
+        def change(wanted: Indices) -> Array:
+            came = of_rows(self.upstream[wanted])
+            if self.turns is not None:
+                size = (len(wanted), COMPONENTS, len(index) * COMPONENTS)
+                came = (self.turns[wanted] @ came.reshape(size)).reshape(came.shape)
+            moved = of_rows(wanted)[:, 1:] - came[:, 1:]
+            moved[~self.may_touch[wanted]] = 0.0
+            return np.asarray(moved)
+
+        slip = change(index)
         if self.before is not None:
             entering = np.flatnonzero(self.before[index])
-            ahead = self._change_block(self.upstream[index[entering]], index)
-            change[entering] -= self.before[index[entering]][:, None, None, None] * ahead
-        return change
-
-    def _change_block(self, rows: Indices, columns: Indices) -> Array:
-        came = self.block(self.upstream[rows], columns)
-        if self.turns is not None:
-            came = np.einsum("kab,kbij->kaij", self.turns[rows], came)
-        change = self.block(rows, columns)[:, 1:] - came[:, 1:]
-        change[~self.may_touch[rows]] = 0.0
-        return np.asarray(change)
+            slip[entering] -= self.before[index[entering]][:, None, None, None] * change(self.upstream[index[entering]])
+        return slip
 
     def touching(self, change: Array) -> Array:
         """Changes (k, 2, ...) of a step, of the share of it in which the material touched."""
@@ -83,7 +109,13 @@ class ContactBody:
     def displacement(self, forces: Array) -> Array:
         """(k, 3) displacement, m, under forces (k, 3), N."""
         size = COMPONENTS * self.n_points
-        return np.asarray((self.compliance.reshape(size, size) @ forces.ravel()).reshape(-1, COMPONENTS))
+        if self.axes is not None:
+            forces = np.einsum("kax,ka->kx", self.axes, forces)
+        loaded = np.flatnonzero(forces)
+        columns = slice(loaded[0], loaded[-1] + 1) if len(loaded) else slice(0)
+        moved = self.compliance.reshape(size, size)[:, columns] @ forces.ravel()[columns]
+        moved = moved.reshape(-1, COMPONENTS)
+        return np.asarray(moved if self.axes is None else np.einsum("kax,kx->ka", self.axes, moved))
 
     def change(self, values: Array) -> Array:
         """(k, 2) change in the road's plane, from the point upstream to the point, of vectors (k, 3)."""

@@ -49,16 +49,17 @@ class Control:
             arms = arms + np.einsum("kab,kb->ka", self.levers, displacement)
         return float((forces * arms).sum())
 
-    def slope(self, body: ContactBody, forces: Array, displacement: Array, index: NDArray[np.int64]) -> Array:
-        """(len(index), 3) derivative of the sum by the forces of some points."""
-        loaded = np.flatnonzero(np.any(forces != 0, axis=1))
+    def slope(self, forces: Array, displacement: Array, loaded: NDArray[np.int64], block: Array) -> Array:
+        """(l, 3) derivative of the sum by the forces of the ``loaded`` points, which alone have forces.
+
+        ``block``: (l, 3, l, 3) compliance between them.
+        """
         if self.levers is None or not len(loaded):
-            return np.asarray(self.arms[index])
-        slope = self.arms + np.einsum("kab,kb->ka", self.levers, displacement)
+            return np.asarray(self.arms[loaded])
+        slope = self.arms[loaded] + np.einsum("kab,kb->ka", self.levers[loaded], displacement[loaded])
         pulled = np.einsum("kab,ka->kb", self.levers[loaded], forces[loaded])
         size = len(loaded) * COMPONENTS
-        through = pulled.ravel() @ body.block(loaded, index).reshape(size, -1)
-        return np.asarray(slope[index] + through.reshape(-1, COMPONENTS))
+        return np.asarray(slope + (pulled.ravel() @ block.reshape(size, size)).reshape(-1, COMPONENTS))
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,8 +120,7 @@ class RollingContact:
     @functools.cached_property
     def _stiffness(self) -> tuple[Array, Array]:
         """1/a and 1/b, (k,), N/m."""
-        every = np.arange(self.body.n_points)
-        at = self.body.compliance[every, :, every, :]
+        at = self.body.local
         return 1 / (self.scale * at[:, 0, 0]), 2 / (self.scale * (at[:, 1, 1] + at[:, 2, 2]))
 
     def solve(self, start: FrictionForces | None = None, values: Sequence[float] | None = None) -> FrictionForces:
@@ -259,9 +259,13 @@ class _State:
         matrix, right = np.zeros((size + many, size + many)), np.zeros(size + many)
         normal, tangential = (stiffness[index] for stiffness in contact._stiffness)
         turning, along, friction = self._turning(index)
+        loaded = np.flatnonzero((self.states != OPEN) | np.any(self.forces != 0, axis=1))
+        compliance = body.block(loaded, loaded)
+        touching = np.searchsorted(loaded, index)
+        to_touching = compliance if count == len(loaded) else compliance[:, :, touching]
         rows = np.empty((count, COMPONENTS, size))
-        rows[:, 0] = normal[:, None] * body.block(index, index)[:, 0].reshape(count, size)
-        change = body.slip_block(index).reshape(count, 2, size)
+        rows[:, 0] = normal[:, None] * to_touching[touching, 0].reshape(count, size)
+        change = body.slip_block(index, loaded, to_touching).reshape(count, 2, size)
         turned = tangential[:, None, None] * turning
         rows[:, 1:] = turned @ change
         block, here = rows.reshape(count, COMPONENTS, count, COMPONENTS), np.arange(count)
@@ -274,13 +278,12 @@ class _State:
         targets[:, 1:] = -np.einsum("kab,kb->ka", turned, body.touching(contact.slips)[index])
         targets[:, 1:] -= np.where(slipping[..., 0], np.einsum("kab,kb->ka", turning, self.pull[index]), 0.0)
         right[:size] = targets.ravel()
-        loaded = np.flatnonzero((self.states != OPEN) | np.any(self.forces != 0, axis=1))
         for number, control in enumerate(contact.controls):
             column = matrix[:size, size + number].reshape(count, COMPONENTS)
             column[:, 0] = normal * control.gaps[index]
             column[:, 1:] = np.einsum("kab,kb->ka", turned, body.touching(control.slips)[index])
             slope = np.zeros_like(self.forces)
-            slope[loaded] = control.slope(body, self.forces, self.displacement, loaded)
+            slope[loaded] = control.slope(self.forces, self.displacement, loaded, compliance)
             matrix[size + number, :size] = slope[index].ravel()
             linear = float((slope * self.forces).sum())
             right[size + number] = control.target - control.sum(self.forces, self.displacement) + linear

@@ -150,18 +150,31 @@ class RollingGrid(Brief):
         """(k, k) displacement of a point along its normal (k, 3) per force along that of another, m/N."""
         across, count = len(self.influence.places[0]), len(self.angles)
         parts = np.einsum("jpx,jcx->jcp", normals.reshape(count, across, 3), self.wheel_axes)
-        compliance = np.empty((count, across, count, across))
-        for to in range(count):
-            for of in range(count):
-                block = self.kernel[count - 1 + to - of]
-                compliance[to, :, of] = np.einsum("ai,aibj,bj->ij", parts[to], block, parts[of], optimize=True)
+        compliance = np.zeros((count, across, count, across))
+        for of in range(count):
+            blocks = self.kernel[count - 1 - of : 2 * count - 1 - of]
+            for a, b in np.ndindex(COMPONENTS, COMPONENTS):
+                compliance[:, :, of] += parts[:, a, :, None] * blocks[:, a, :, b] * parts[of, b]
         return compliance.reshape(self.n_points, self.n_points)
 
     @functools.cached_property
+    def level_axes(self) -> Array:
+        """(3, 3) `road_axes` of a flat road, the same at all points."""
+        return self.road_axes(self.road.normal[None])[0]
+
+    @functools.cached_property
     def level_compliance(self) -> Array:
-        """`compliance` along the axes of a flat road."""
-        normals = np.broadcast_to(self.road.normal, (self.n_points, 3))
-        return self.compliance(self.road_axes(normals))
+        """(k, 3, k, 3) displacement of a point along `level_axes` per force along them on another, m/N."""
+        across, count = len(self.influence.places[0]), len(self.angles)
+        turns = self.level_axes @ self.wheel_axes.transpose(0, 2, 1)
+        compliance = np.empty((count, across, COMPONENTS, count, across, COMPONENTS))
+        for of in range(count):
+            blocks = self.kernel[count - 1 - of : 2 * count - 1 - of]
+            turned = turns @ blocks.reshape(count, COMPONENTS, -1)
+            turned = turned.reshape(count, COMPONENTS, across, COMPONENTS, across).transpose(0, 2, 1, 4, 3)
+            turned = np.ascontiguousarray(turned).reshape(-1, COMPONENTS) @ turns[of].T
+            compliance[:, :, :, of] = turned.reshape(count, across, COMPONENTS, across, COMPONENTS)
+        return compliance.reshape(self.n_points, COMPONENTS, self.n_points, COMPONENTS)
 
     def compliance(self, axes: Array) -> Array:
         """(k, 3, k, 3) displacement of a point along its ``axes`` (k, 3, 3) per force along those of another, m/N."""

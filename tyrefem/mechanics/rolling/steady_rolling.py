@@ -187,8 +187,9 @@ class SteadyRolling(Brief):
         axes = grid.road_axes(normals)
         gaps = gaps + np.einsum("kx,kx->k", normals, moved)
         before = None if self.friction == 0 else front
-        compliance = grid.compliance(axes) if grid.turns(axes) is not None else grid.level_compliance
-        body = ContactBody(compliance, grid.upstream, grid.turns(axes), before)
+        turns = grid.turns(axes)
+        from_level = None if turns is None else axes @ grid.level_axes.T
+        body = ContactBody(grid.level_compliance, grid.upstream, turns, before, from_level)
         free = grid.free_places
         rigid = body.change(grid.along(axes, free))
         per_radian = -grid.step * motion.road_per_travel(*grid.middles(moved))
