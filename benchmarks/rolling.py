@@ -1,6 +1,6 @@
-"""Rolling with friction: closed forms, power balance, speed, and the measured 205/60R15 over its loads.
+"""Rolling with friction: closed forms, power balance, and the measured 205/60R15 over its loads.
 
-    python benchmarks/rolling.py [--closed-forms] [--loss] [--measured] [--speed] [--pictures]
+    python benchmarks/rolling.py [--closed-forms] [--loss] [--measured] [--pictures]
 
 Writes docs/evidence/tables/rolling-closed-forms.csv, rolling-loss.csv and rolling-measured.csv. Nothing is fitted.
 """
@@ -11,7 +11,6 @@ import argparse
 import csv
 import math
 import os
-import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -200,23 +199,6 @@ def measured() -> None:
                     print(*words, flush=True)
 
 
-def speed() -> None:
-    """Print processor seconds of a footprint, a point and a curve of 20 points."""
-    study = tf.study("passenger-205-55r16", {"mesh.size": "2.5 mm"})
-    start = time.process_time()
-    wheel = wheel_on_road(study, load=4000.0)
-    nodes = wheel.pressed.tyre.body.rings.n_nodes
-    print(f"{nodes} nodes, inflated and pressed: {time.process_time() - start:.1f} s")
-    for harmonics in (40,):
-        start = time.process_time()
-        near = wheel.free(harmonics)
-        print(f"{harmonics} harmonics, compliance and free rolling: {time.process_time() - start:.1f} s")
-        start = time.process_time()
-        for angle in np.radians(np.linspace(0.5, 10, 20)):
-            near = wheel.roll(RollingMotion(float(angle), speed=20.0), {"torque": 0.0}, harmonics, near)
-        print(f"{harmonics} harmonics, 20 points: {time.process_time() - start:.1f} s")
-
-
 def pictures() -> None:
     """Draw the pictures of the pages."""
     from tyrefem.reports.figures.rolling import contact_figure, slip_curve_figure
@@ -232,7 +214,7 @@ def pictures() -> None:
 def main() -> None:
     """Run the parts that are named, or the closed forms."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parts = {"closed-forms": closed_forms, "loss": loss, "measured": measured, "speed": speed, "pictures": pictures}
+    parts = {"closed-forms": closed_forms, "loss": loss, "measured": measured, "pictures": pictures}
     for name in parts:
         parser.add_argument(f"--{name}", action="store_true")
     chosen = vars(parser.parse_args())

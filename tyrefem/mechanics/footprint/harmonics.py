@@ -239,12 +239,29 @@ class Harmonics(Brief):
         if key not in self._orders:
             from scipy.sparse.linalg import splu
 
-            last = np.searchsorted(self.free, dofs)
-            inner = np.setdiff1d(np.arange(len(self.free)), last)
-            among = self.free[inner]
+            among = np.setdiff1d(self.free, dofs)
             factor = splu(self.stiffness(1)[among][:, among].tocsc(), permc_spec="MMD_AT_PLUS_A", **SYMMETRIC)
-            self._orders[key] = self.free[np.concatenate([inner[np.argsort(factor.perm_c)], last])]
+            self._orders[key] = np.concatenate([among[np.argsort(factor.perm_c)], dofs])
         return self._orders[key]
+
+    def condensed(self, n: int, dofs: Indices) -> Any:
+        """(k, k) stiffness of some degrees of freedom, held or not, while no force acts on the others that are free,
+        N/m per radian.
+
+        Raises
+        ------
+        InputError : harmonic n has no stiffness at the others.
+        """
+        from scipy.sparse.linalg import splu
+
+        order = self._last(dofs)
+        try:
+            factor = splu(self.stiffness(n)[order][:, order].tocsc(), permc_spec="NATURAL", **SYMMETRIC)
+        except RuntimeError:
+            raise InputError(f"harmonic {n:g} has no stiffness: nothing holds the body") from None
+        k = len(dofs)
+        condensed = (factor.L[-k:, -k:] @ factor.U[-k:, -k:]).toarray()
+        return (condensed + condensed.T) / 2
 
     def compliance(self, n: int, dofs: Indices) -> Array:
         """(k, k) displacements of some free degrees of freedom under unit loads on them, m per N per radian.

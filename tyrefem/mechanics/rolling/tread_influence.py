@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
 from tyrefem.cache import Cache
+from tyrefem.errors import InputError
 from tyrefem.mechanics.footprint.compliance import TreadCompliance, interpolation, solved_harmonics
 from tyrefem.mechanics.footprint.elements import COMPONENTS, SectionElements
 from tyrefem.mechanics.footprint.harmonics import Harmonics
@@ -128,10 +129,9 @@ class TreadInfluence(Brief):
         """(3, m, 3, m) displacement per force amplitude of harmonic n, m per N per radian, with a cache."""
 
         def compute() -> Array:
-            symmetric = self._of(self.tread.harmonics, n)
             if not self.tread.half:
-                return symmetric
-            antisymmetric = self._of(self.antisymmetric, n)
+                return self._of(self.tread.harmonics, n)
+            symmetric, antisymmetric = self._families(n)
             nodes, sides = self.source
             same, other = (symmetric + antisymmetric) / 2, (symmetric - antisymmetric) / 2
             turned = np.where(sides[None, :] < 0, MIRROR[:, None], 1.0)
@@ -152,6 +152,39 @@ class TreadInfluence(Brief):
         compliance[np.ix_(free, free)] = at_free
         shape = (COMPONENTS, len(self.tread.nodes))
         return compliance.reshape(*shape, *shape)
+
+    def _families(self, n: int) -> tuple[Array, Array]:
+        """`_of` symmetric and of antisymmetric motions, by a single factorisation: both hold other components on the mid
+        plane, which is left free."""
+        dofs = (COMPONENTS * self.tread.nodes + np.arange(COMPONENTS)[:, None]).ravel()
+        symmetric, other = self.tread.harmonics.held, self.antisymmetric.held
+        middle = np.setdiff1d(np.setxor1d(symmetric, other), dofs)
+        dofs = np.setdiff1d(dofs, np.intersect1d(symmetric, other), assume_unique=True)
+        last = np.concatenate([dofs, middle])
+        condensed = self.tread.harmonics.condensed(n, last)
+        return self._freed(condensed, last, symmetric, n), self._freed(condensed, last, other, n)
+
+    def _freed(self, condensed: Array, last: Indices, held: Indices, n: int) -> Array:
+        """(3, m, 3, m) compliance of the tread of a ``condensed`` stiffness of the dofs ``last``, some of them held."""
+        from scipy.linalg import LinAlgError, cho_factor, cho_solve
+
+        free = np.flatnonzero(~np.isin(last, held))
+        stiffness = condensed[np.ix_(free, free)]
+        if np.iscomplexobj(stiffness):
+            inverse = np.linalg.inv(stiffness)
+        else:
+            try:
+                inverse = cho_solve(cho_factor(stiffness), np.eye(len(free)))
+            except LinAlgError:
+                raise InputError(f"the state is not stable: harmonic {n:g} has negative stiffness") from None
+        nodes = np.full(self.tread.harmonics.elements.n_dofs, -1)
+        wanted = COMPONENTS * self.tread.nodes + np.arange(COMPONENTS)[:, None]
+        nodes[wanted.ravel()] = np.arange(wanted.size)
+        at = nodes[last[free]]
+        on_tread = np.flatnonzero(at >= 0)
+        compliance = np.zeros((wanted.size, wanted.size), dtype=inverse.dtype)
+        compliance[np.ix_(at[on_tread], at[on_tread])] = inverse[np.ix_(on_tread, on_tread)]
+        return compliance.reshape(*wanted.shape, *wanted.shape)
 
     def kernel(self, harmonics: int, n_angles: int) -> Array:
         """(2 n_angles - 1, 3, m, 3, m) displacement of a point per force on another, d angles behind it, m/N.
