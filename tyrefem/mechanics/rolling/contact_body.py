@@ -31,7 +31,7 @@ class ContactBody:
     turns : (k, 3, 3) turn from the axes of the point upstream to those of the point; None: all axes are parallel.
     before : (k,) share of the last step before the material of a point touched. In that share it moved over the road
         as in the step before; this does not count as slip. None: zero.
-    axes : (k, 3, 3) turn from the axes in which the compliance is given to those of each point; None: they are the same.
+    axes : (k, 3, 3) turn from the axes of the compliance to those of each point; None: they are the same.
     """
 
     compliance: Array

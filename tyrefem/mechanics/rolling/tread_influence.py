@@ -154,8 +154,10 @@ class TreadInfluence(Brief):
         return compliance.reshape(*shape, *shape)
 
     def _families(self, n: int) -> tuple[Array, Array]:
-        """`_of` symmetric and of antisymmetric motions, by a single factorisation: both hold other components on the mid
-        plane, which is left free."""
+        """`_of` symmetric and of antisymmetric motions, by a single factorisation.
+
+        Both hold other components on the mid plane, which is left free.
+        """
         dofs = (COMPONENTS * self.tread.nodes + np.arange(COMPONENTS)[:, None]).ravel()
         symmetric, other = self.tread.harmonics.held, self.antisymmetric.held
         middle = np.setdiff1d(np.setxor1d(symmetric, other), dofs)
