@@ -1,8 +1,9 @@
 """Rolling with friction: closed forms, power balance, and the measured 205/60R15 over its loads.
 
-    python benchmarks/rolling.py [--closed-forms] [--loss] [--measured] [--pictures]
+    python benchmarks/rolling.py [--closed-forms] [--loss] [--measured] [--standing] [--pictures]
 
-Writes docs/evidence/tables/rolling-closed-forms.csv, rolling-loss.csv and rolling-measured.csv. Nothing is fitted.
+Writes docs/evidence/tables/rolling-closed-forms.csv, rolling-loss.csv, rolling-measured.csv
+and rolling-standing.csv. Nothing is fitted.
 """
 
 from __future__ import annotations
@@ -32,6 +33,7 @@ from tyrefem.mechanics.rolling.lossy_harmonics import LossyHarmonics
 from tyrefem.mechanics.rolling.roll import settled, wheel_on_road
 from tyrefem.mechanics.rolling.rolling_motion import RollingMotion
 from tyrefem.mechanics.rolling.slip_curve import slip_stiffness
+from tyrefem.mechanics.rolling.standing import DIRECTIONS, StandingTyre
 from tyrefem.mechanics.rolling.steady_rolling import RollingLoads, SteadyRolling
 from tyrefem.mechanics.rolling.tread_influence import TreadInfluence
 
@@ -47,6 +49,8 @@ BALANCES = (
     (math.inf, -4, 4, 0, 0), (math.inf, 0, 0, 300, 0), (math.inf, 0, 2, -400, 0), (math.inf, 3, 6, 200, 0.02),
     (1.7, 0, 3, 0, 0), (1.7, 2, 4, -300, 0),
 )  # fmt: skip
+#: Harmonics and pushes, m, of the standing tyre.
+HARMONICS, PUSHES = 80, (1e-3, 3e-3, 5e-3)
 #: Straight ahead without torque; tan delta of the tyre with loss.
 STRAIGHT, TANGENT = (math.inf, 0, 0, 0, 0), 0.15
 
@@ -199,6 +203,38 @@ def measured() -> None:
                     print(*words, flush=True)
 
 
+def standing() -> None:
+    """Write the stiffness of the standing tyre forward and sideways, beside the measured one."""
+    with (STUDY.parent / "structure.csv").open(encoding="utf-8") as stream:
+        known = {
+            row["quantity"]: float(row["value"]) for row in csv.DictReader(line for line in stream if line[0] != "#")
+        }
+    measured = [known["longitudinal stiffness"], known["lateral stiffness"]]
+    with (TABLES / "rolling-standing.csv").open("w", encoding="utf-8", newline="") as stream:
+        table = csv.writer(stream, lineterminator="\n")
+        table.writerow(["contact", "moduli", *(
+            f"{name} [{unit}]" for name in ("forward", "sideways") for unit in ("N/mm", "% of measured, less 100")
+        )])  # fmt: skip
+
+        def row(contact: str, moduli: str, *stiffnesses: float) -> None:
+            words = [contact, moduli]
+            for stiffness, value in zip(stiffnesses, measured, strict=True):
+                words += [f"{stiffness / 1e3:.1f}", f"{100 * (stiffness / 1e3 / value - 1):+.1f}"]
+            table.writerow(words)
+            print(*words, flush=True)
+
+        for motion in ("linear", "large"):
+            wheel = wheel_on_road(tf.study(STUDY), load=4000.0, friction=1.0, motion=motion)
+            tyre = StandingTyre(wheel.pressed, wheel.free(HARMONICS))
+            cycle = {region: law.modulus_amplitude for region, law in tyre.laws.items()}
+            for moduli, amplitude in (("of a revolution", cycle), ("at 0.1 % of shear", 1e-3), ("at 1 %", 1e-2)):
+                stiffness = tyre.stiffness(amplitude)
+                row(motion, moduli, stiffness.longitudinal, stiffness.lateral)
+            for push in PUSHES if motion == "linear" else ():
+                forward, left = (tyre.pushed(push, direction)[0] for direction in DIRECTIONS)
+                row(motion, f"of a push by {1e3 * push:g} mm", forward, left)
+
+
 def pictures() -> None:
     """Draw the pictures of the pages."""
     from tyrefem.reports.figures.rolling import contact_figure, slip_curve_figure
@@ -214,7 +250,13 @@ def pictures() -> None:
 def main() -> None:
     """Run the parts that are named, or the closed forms."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parts = {"closed-forms": closed_forms, "loss": loss, "measured": measured, "pictures": pictures}
+    parts = {
+        "closed-forms": closed_forms,
+        "loss": loss,
+        "measured": measured,
+        "standing": standing,
+        "pictures": pictures,
+    }
     for name in parts:
         parser.add_argument(f"--{name}", action="store_true")
     chosen = vars(parser.parse_args())

@@ -212,7 +212,7 @@ def _curve_words(curve: SlipCurve) -> str:
         f"  cornering stiffness  {stiffness.cornering / 1e3:.2f} kN/rad; trail {stiffness.trail * 1e3:.1f} mm",
         f"  slip stiffness       {stiffness.slip / 1e3:.2f} kN",
         f"  standing tyre        {curve.standing.longitudinal / 1e3:.1f} N/mm forward, "
-        f"{curve.standing.lateral / 1e3:.1f} N/mm sideways",
+        f"{curve.standing.lateral / 1e3:.1f} N/mm sideways, of a small push",
         f"  greatest force       {peak['force_N']:.0f} N at {where}",
         f"  harmonics            {curve.states[0].harmonics}, error of the force {curve.error:.2%}",
         f"  {_motion_words(curve.wheel)}",

@@ -17,6 +17,7 @@ from tyrefem.mechanics.rolling.body_loss import BodyLoss
 from tyrefem.mechanics.rolling.friction import OPEN, SLIP, FrictionForces
 from tyrefem.mechanics.rolling.rolling_grid import RollingGrid
 from tyrefem.mechanics.rolling.rolling_motion import RollingMotion
+from tyrefem.mechanics.rolling.section_fields import SectionFields
 
 Array = NDArray[np.float64]
 #: The wheel's torque of a force f at a place p of (x forward, y down, z left) is f . (TORQUE p), N m.
@@ -76,7 +77,7 @@ class RolledTyre(Brief):
         return np.asarray(np.einsum("kax,ka->kx", self.axes, self.contact.displacement))
 
     @functools.cached_property
-    def _vectors(self) -> Array:
+    def vectors(self) -> Array:
         """(k, 3) forces (x forward, y down, z left), N."""
         return np.asarray(np.einsum("kax,ka->kx", self.axes, self.contact.forces))
 
@@ -90,7 +91,7 @@ class RolledTyre(Brief):
     @functools.cached_property
     def _iso(self) -> Array:
         """(3, k) forces: x forward, y left, z up."""
-        x, down, left = self.grid.road.in_road_axes(self._vectors.T)
+        x, down, left = self.grid.road.in_road_axes(self.vectors.T)
         return np.stack([x, left, -down])
 
     @functools.cached_property
@@ -106,7 +107,7 @@ class RolledTyre(Brief):
     @functools.cached_property
     def torque(self) -> float:
         """Torque of the axle on the wheel, N m; positive drives, negative brakes."""
-        return float((self._vectors * ((self.grid.free_places + self.moved) @ TORQUE.T)).sum())
+        return float((self.vectors * ((self.grid.free_places + self.moved) @ TORQUE.T)).sum())
 
     @property
     def pneumatic_trail(self) -> float:
@@ -189,10 +190,15 @@ class RolledTyre(Brief):
         return float(self.power_map.sum())
 
     @functools.cached_property
+    def fields(self) -> SectionFields:
+        """Motion of the whole section."""
+        vectors = self._map(self.vectors)
+        return SectionFields(self.grid, np.asarray(np.einsum("jpx,jcx->jpc", vectors, self.grid.wheel_axes)))
+
+    @functools.cached_property
     def body_loss(self) -> BodyLoss:
         """Loss of the rubber; none where the stiffness has none."""
-        vectors = self._map(self._vectors)
-        return BodyLoss(self.grid, np.asarray(np.einsum("jpx,jcx->jpc", vectors, self.grid.wheel_axes)))
+        return BodyLoss(self.fields)
 
     @property
     def loss_power(self) -> float:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
 from tyrefem.errors import InputError
+from tyrefem.mechanics.footprint.natural_frequencies import AMPLITUDE
 from tyrefem.mechanics.rolling.roll import (
     SMALL_ANGLE,
     SMALL_SLIP,
@@ -26,7 +27,7 @@ from tyrefem.mechanics.rolling.roll import (
 )
 from tyrefem.mechanics.rolling.rolled import RolledTyre
 from tyrefem.mechanics.rolling.rolling_motion import RollingMotion
-from tyrefem.mechanics.rolling.standing import StandingStiffness, standing
+from tyrefem.mechanics.rolling.standing import StandingStiffness, StandingTyre
 
 if TYPE_CHECKING:
     from tyrefem.inputs.study import StudyData
@@ -85,8 +86,8 @@ class SlipCurve(Brief):
 
     @functools.cached_property
     def standing(self) -> StandingStiffness:
-        """Longitudinal and lateral stiffness of the standing tyre, where it rolls freely."""
-        return standing(self.wheel.free(self.states[0].harmonics))
+        """Longitudinal and lateral stiffness of the standing tyre, where it rolls freely; moduli of small strain."""
+        return StandingTyre(self.wheel.pressed, self.wheel.free(self.states[0].harmonics)).stiffness()
 
     @property
     def table(self) -> Any:
@@ -123,6 +124,7 @@ class SlipCurve(Brief):
             "pneumatic_trail_m": self.stiffness.trail,
             "standing_longitudinal_stiffness_N_m": self.standing.longitudinal,
             "standing_lateral_stiffness_N_m": self.standing.lateral,
+            "standing_strain_amplitude": AMPLITUDE,
             "effective_rolling_radius_m": self.wheel.free(self.states[0].harmonics).travel,
             "peak": self.peak,
             "points": [row(self.wheel, state) for state in self.states],
