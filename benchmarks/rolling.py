@@ -1,9 +1,9 @@
 """Rolling with friction: closed forms, power balance, and the measured 205/60R15 over its loads.
 
-    python benchmarks/rolling.py [--closed-forms] [--loss] [--measured] [--standing] [--pictures]
+    python benchmarks/rolling.py [--closed-forms] [--loss] [--measured] [--standing] [--large] [--pictures]
 
-Writes docs/evidence/tables/rolling-closed-forms.csv, rolling-loss.csv, rolling-measured.csv
-and rolling-standing.csv. Nothing is fitted.
+Writes docs/evidence/tables/rolling-closed-forms.csv, rolling-loss.csv, rolling-measured.csv,
+rolling-standing.csv and rolling-large.csv. Nothing is fitted.
 """
 
 from __future__ import annotations
@@ -51,6 +51,8 @@ BALANCES = (
 )  # fmt: skip
 #: Harmonics and pushes, m, of the standing tyre.
 HARMONICS, PUSHES = 80, (1e-3, 3e-3, 5e-3)
+#: Slip angle, deg, and slip of the balances in large motion.
+LARGE = ((1.0, 0.0), (3.0, 0.0), (0.0, -0.02), (0.0, -0.05))
 #: Straight ahead without torque; tan delta of the tyre with loss.
 STRAIGHT, TANGENT = (math.inf, 0, 0, 0, 0), 0.15
 
@@ -235,6 +237,37 @@ def standing() -> None:
                 row(motion, f"of a push by {1e3 * push:g} mm", forward, left)
 
 
+def large() -> None:
+    """Write slopes and the balance of powers of rolling on the footprint in large motion, over load."""
+    with MEASURED.open(encoding="utf-8") as stream:
+        rows = list(csv.DictReader(line for line in stream if line[0] != "#"))
+    names = ("cornering_stiffness [kN/rad]", "longitudinal_slip_stiffness [kN]", "pneumatic_trail [mm]",
+             "effective_rolling_radius [mm]")  # fmt: skip
+    with (TABLES / "rolling-large.csv").open("w", encoding="utf-8", newline="") as stream:
+        table = csv.writer(stream, lineterminator="\n")
+        balances = [f"balance at {angle:g} deg, slip {slip:g} [%]" for angle, slip in LARGE]
+        table.writerow(
+            [
+                "load [N]",
+                *(word for name in names for word in (name, f"{name.split(' [')[0]}, deviation [%]")),
+                *balances,
+            ]
+        )
+        for line in rows:
+            wheel = wheel_on_road(tf.study(STUDY), load=float(line["load [N]"]), friction=1.0, motion="large")
+            free, stiffness = wheel.free(HARMONICS), slip_stiffness(wheel, HARMONICS)
+            values = (stiffness.cornering / 1e3, stiffness.slip / 1e3, 1e3 * stiffness.trail, 1e3 * free.travel)
+            words = [line["load [N]"]]
+            for name, value in zip(names, values, strict=True):
+                words += [f"{value:.4g}", f"{100 * (value / float(line[name]) - 1):+.1f}"]
+            for angle, slip in LARGE:
+                along = {"slip": slip} if slip else {"torque": 0.0}
+                motion = RollingMotion(math.radians(angle), speed=wheel.speed)
+                words.append(f"{100 * wheel.roll(motion, along, HARMONICS, free).balance:+.2f}")
+            table.writerow(words)
+            print(*words, flush=True)
+
+
 def pictures() -> None:
     """Draw the pictures of the pages."""
     from tyrefem.reports.figures.rolling import contact_figure, slip_curve_figure
@@ -255,6 +288,7 @@ def main() -> None:
         "loss": loss,
         "measured": measured,
         "standing": standing,
+        "large": large,
         "pictures": pictures,
     }
     for name in parts:

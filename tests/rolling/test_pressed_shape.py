@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 
 import numpy as np
@@ -18,6 +19,13 @@ from tyrefem.mechanics.rolling.rolling_motion import RollingMotion
 from tyrefem.mechanics.rolling.steady_rolling import RollingLoads, SteadyRolling
 
 DEFLECTION, HARMONICS = 0.006, 24
+
+
+@functools.lru_cache(2)
+def deep(drum: float) -> tuple[Pressing, Footprint]:
+    """A footprint with 120 harmonics at 15 mm."""
+    pressing = pressed(drum)
+    return pressing, Balance(pressing, 12, 120, tolerance=1e-4).at_deflection(0.015)
 
 
 def pressed(drum: float) -> Pressing:
@@ -58,6 +66,36 @@ def test_without_friction_it_is_the_footprint_in_large_motion(drum: float) -> No
     assert abs(linear.load - footprint.load) > 0.05 * footprint.load
     ours, theirs = pressure_of(state, footprint)
     assert ours == pytest.approx(theirs, abs=5e-3 * theirs.max())
+
+
+@pytest.mark.parametrize(
+    ("drum", "slip_angle", "slip", "torque"),
+    [(math.inf, 1.0, None, 0.0), (math.inf, 3.0, None, -100.0), (math.inf, 0.0, -0.01, None),
+     (math.inf, 0.0, -0.03, None), (math.inf, 0.0, 0.01, None), (1.0, 1.0, -0.02, None)],
+)  # fmt: skip
+def test_the_axle_puts_in_what_friction_takes_out(
+    drum: float, slip_angle: float, slip: float | None, torque: float | None
+) -> None:
+    """The shape turns until the forces do no work on it: in a shape that stands still up to 28 % are missing."""
+    pressing, footprint = deep(drum)
+    tyre = SteadyRolling(pressing, friction=0.8, shape=PressedShape(footprint))
+    travel = None if slip is None else footprint.rolling_radius / (1 + slip)
+    loads = RollingLoads(load=footprint.load, travel=travel, torque=torque)
+    guess = (footprint.deflection, footprint.rolling_radius)
+    rolled = tyre.roll(RollingMotion(math.radians(slip_angle), speed=20.0), loads, 120, guess=guess)
+    assert rolled.friction_power > 20
+    assert abs(rolled.balance) < 0.01
+    work = float((rolled.vectors * rolled.grid.shape_rate).sum())
+    assert abs(work) < 1e-5 * float(np.abs(rolled.vectors * rolled.grid.shape_rate).sum())
+    if slip is not None:
+        assert rolled.grid.turn * slip > 0
+
+
+def test_a_shape_without_friction_does_not_turn() -> None:
+    pressing, footprint = deep(math.inf)
+    loads = RollingLoads(deflection=footprint.deflection, travel=footprint.rolling_radius)
+    rolled = SteadyRolling(pressing, friction=0.0, shape=PressedShape(footprint)).roll(RollingMotion(), loads, 120)
+    assert abs(rolled.grid.turn) < 1e-9
 
 
 def test_friction_acts_from_that_shape() -> None:

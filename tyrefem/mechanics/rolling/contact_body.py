@@ -32,6 +32,7 @@ class ContactBody:
     before : (k,) share of the last step before the material of a point touched. In that share it moved over the road
         as in the step before; this does not count as slip. None: zero.
     axes : (k, 3, 3) turn from the axes of the compliance to those of each point; None: they are the same.
+    common : (k, 3) a motion g that all points share: forces f move them by g (g . f) more, m/sqrt(N m). None: none.
     """
 
     compliance: Array
@@ -39,6 +40,7 @@ class ContactBody:
     turns: Array | None = None
     before: Array | None = None
     axes: Array | None = None
+    common: Array | None = None
 
     @property
     def n_points(self) -> int:
@@ -54,12 +56,14 @@ class ContactBody:
         """(n, 3, m, 3) compliance between some points."""
         every = np.arange(COMPONENTS)
         block = np.asarray(self.compliance[np.ix_(rows, every, columns, every)])
-        if self.axes is None:
-            return block
-        n, m = len(rows), len(columns)
-        turned = (self.axes[rows] @ block.reshape(n, COMPONENTS, m * COMPONENTS)).reshape(-1, m, COMPONENTS)
-        turned = turned.transpose(1, 0, 2) @ self.axes[columns].transpose(0, 2, 1)
-        return np.asarray(turned.transpose(1, 0, 2).reshape(n, COMPONENTS, m, COMPONENTS))
+        if self.axes is not None:
+            n, m = len(rows), len(columns)
+            turned = (self.axes[rows] @ block.reshape(n, COMPONENTS, m * COMPONENTS)).reshape(-1, m, COMPONENTS)
+            turned = turned.transpose(1, 0, 2) @ self.axes[columns].transpose(0, 2, 1)
+            block = turned.transpose(1, 0, 2).reshape(n, COMPONENTS, m, COMPONENTS)
+        if self.common is not None:
+            block = block + np.multiply.outer(self.common[rows], self.common[columns])
+        return np.asarray(block)
 
     @functools.cached_property
     def local(self) -> Array:
@@ -109,13 +113,13 @@ class ContactBody:
     def displacement(self, forces: Array) -> Array:
         """(k, 3) displacement, m, under forces (k, 3), N."""
         size = COMPONENTS * self.n_points
-        if self.axes is not None:
-            forces = np.einsum("kax,ka->kx", self.axes, forces)
-        loaded = np.flatnonzero(forces)
+        turned = forces if self.axes is None else np.einsum("kax,ka->kx", self.axes, forces)
+        loaded = np.flatnonzero(turned)
         columns = slice(loaded[0], loaded[-1] + 1) if len(loaded) else slice(0)
-        moved = self.compliance.reshape(size, size)[:, columns] @ forces.ravel()[columns]
+        moved = self.compliance.reshape(size, size)[:, columns] @ turned.ravel()[columns]
         moved = moved.reshape(-1, COMPONENTS)
-        return np.asarray(moved if self.axes is None else np.einsum("kax,kx->ka", self.axes, moved))
+        moved = moved if self.axes is None else np.einsum("kax,kx->ka", self.axes, moved)
+        return np.asarray(moved if self.common is None else moved + self.common * float((self.common * forces).sum()))
 
     def change(self, values: Array) -> Array:
         """(k, 2) change in the road's plane, from the point upstream to the point, of vectors (k, 3)."""

@@ -22,8 +22,12 @@ class PressedShape(Brief):
     Friction adds forces to those of the pressed tyre, and the tread moves with the compliance C of small motion about
     the inflated tyre from there. Without friction the contact of d is the footprint itself.
 
-    d stays where it is round the wheel while forces change. The work of a revolution on it need not vanish, as that of
-    an elastic tyre does: `RolledTyre.balance` shows what is left.
+    As friction pulls, d turns round the wheel by the angle s at which the forces do no work in turning it further:
+
+    u = d(t + s) + C f,   sum over the points of f . d'(t + s) = 0
+
+    u is the derivative by f of C f . f/2 + max over s of f . d(t + s), which does not change where f turns round the
+    wheel. So the work of a revolution on an elastic tyre vanishes, as it must (`SteadyRolling`).
 
     Parameters
     ----------

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import functools
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +19,8 @@ from tyrefem.mechanics.rolling.tread_influence import TreadInfluence
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
+#: Largest angle, rad, by which a pressed shape turns.
+LARGEST_TURN = 0.2
 #: Angles beyond the contact that may touch, on each side, of a new grid; and at most, of a grid that is kept.
 ANGLES_BEYOND, MOST_BEYOND = 3, 6
 
@@ -29,7 +32,8 @@ class RollingGrid(Brief):
     Axes (x forward, y down, z left) are the wheel's. Material runs in at the front (positive angles), so a point's
     material was at the next larger angle a step before. The largest angle cannot touch.
 
-    ``shape``: the pressed tyre from which forces move the points; None: the inflated tyre.
+    ``shape``: the pressed tyre from which forces move the points; None: the inflated tyre. ``turn``: angle by which it
+    has turned back round the wheel, rad.
     """
 
     influence: TreadInfluence
@@ -38,6 +42,9 @@ class RollingGrid(Brief):
     first: int
     last: int
     shape: PressedShape | None = None
+    turn: float = 0.0
+    #: What does not depend on ``turn``; shared by the grids of `turned`.
+    _kept: dict[str, Any] = field(default_factory=dict, repr=False)
 
     @property
     def step(self) -> float:
@@ -77,7 +84,15 @@ class RollingGrid(Brief):
             return self
         furthest = self.harmonics - 1
         first, last = max(low - ANGLES_BEYOND, -furthest), min(high + ANGLES_BEYOND, furthest)
-        return RollingGrid(self.influence, self.road, self.harmonics, first, last, self.shape)
+        return RollingGrid(self.influence, self.road, self.harmonics, first, last, self.shape, self.turn)
+
+    def under(self, influence: TreadInfluence) -> RollingGrid:
+        """The same points with another compliance."""
+        return replace(self, influence=influence, _kept={})
+
+    def turned(self, more: float) -> RollingGrid:
+        """The grid whose pressed shape has turned by ``more`` rad, at most to `LARGEST_TURN` in all."""
+        return replace(self, turn=min(max(self.turn + more, -LARGEST_TURN), LARGEST_TURN))
 
     @functools.cached_property
     def areas(self) -> Array:
@@ -94,13 +109,40 @@ class RollingGrid(Brief):
         axes[:, 2, 0], axes[:, 2, 1] = cos, -sin
         return axes
 
+    def shape_at(self, shift: float) -> Array:
+        """(n_angles, 3, m) what the pressed shape adds along (r, z, t) at angles + ``turn`` + ``shift``, m."""
+        assert self.shape is not None
+        if "shape" not in self._kept:
+            from scipy.interpolate import CubicSpline
+
+            beyond = math.ceil(LARGEST_TURN / self.step) + 1
+            angles = self.step * np.arange(self.first - beyond, self.last + beyond + 1, dtype=float)
+            kernel = self.influence.kernel(self.harmonics, len(angles))
+            added = self.shape.offsets(self.influence, self.harmonics, angles, kernel)
+            self._kept["shape"] = CubicSpline(angles, added)
+        return np.asarray(self._kept["shape"](self.angles + self.turn + shift))
+
     @functools.cached_property
     def offsets(self) -> Array | float:
         """(k, 3) what the pressed shape adds to the inflated one, (x, y, z), m."""
-        if self.shape is None:
-            return 0.0
-        added = self.shape.offsets(self.influence, self.harmonics, self.angles, self.kernel)
-        return np.asarray(np.einsum("jcx,jcp->jpx", self.wheel_axes, added).reshape(-1, 3))
+        return 0.0 if self.shape is None else self.from_wheel(self.shape_at(0.0))
+
+    @functools.cached_property
+    def shape_rate(self) -> Array:
+        """(k, 3) change of `offsets` in the wheel's axes per radian of ``turn``, m: over a step on both sides."""
+        return self.from_wheel((self.shape_at(self.step) - self.shape_at(-self.step)) / (2 * self.step))
+
+    def from_wheel(self, components: Array) -> Array:
+        """(k, 3) vectors (x, y, z) of components (n_angles, 3, m) along (r, z, t)."""
+        return np.asarray(np.einsum("jcx,jcp->jpx", self.wheel_axes, components).reshape(-1, 3))
+
+    def rate(self, vectors: Array) -> Array:
+        """(k, 3) change per radian, over a step on both sides, of vectors (k, 3) that vanish beyond the grid, in the
+        wheel's axes at each angle."""
+        by_angle = vectors.reshape(len(self.angles), -1, 3)
+        components = np.einsum("jcx,jpx->jcp", self.wheel_axes, by_angle)
+        padded = np.pad(components, ((1, 1), (0, 0), (0, 0)))
+        return self.from_wheel((padded[2:] - padded[:-2]) / (2 * self.step))
 
     @functools.cached_property
     def free_places(self) -> Array:
@@ -162,9 +204,14 @@ class RollingGrid(Brief):
         """(3, 3) `road_axes` of a flat road, the same at all points."""
         return self.road_axes(self.road.normal[None])[0]
 
-    @functools.cached_property
+    @property
     def level_compliance(self) -> Array:
         """(k, 3, k, 3) displacement of a point along `level_axes` per force along them on another, m/N."""
+        if "level" not in self._kept:
+            self._kept["level"] = self._level_compliance()
+        return np.asarray(self._kept["level"])
+
+    def _level_compliance(self) -> Array:
         across, count = len(self.influence.places[0]), len(self.angles)
         turns = self.level_axes @ self.wheel_axes.transpose(0, 2, 1)
         compliance = np.empty((count, across, COMPONENTS, count, across, COMPONENTS))

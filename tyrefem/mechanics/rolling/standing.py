@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -142,12 +142,12 @@ class StandingTyre(Brief):
         return TreadInfluence(TreadCompliance(Harmonics(dynamic_state(self.pressed.tyre, stiffening))))
 
     def _contact(self, amplitudes: Mapping[str, float]) -> tuple[ContactBody, States]:
-        grid, axes = replace(self.rolled.grid, influence=self._points(amplitudes)), self.rolled.axes
+        grid, axes = self.rolled.grid.under(self._points(amplitudes)), self.rolled.axes
         return ContactBody(grid.compliance(axes), grid.upstream, grid.turns(axes)), self.rolled.contact.states
 
     def _amplitudes(self, forces: Array, amplitudes: Mapping[str, float]) -> dict[str, float]:
         """Region -> amplitude at which it stores as much as its points under forces (k, 3), N."""
-        grid = replace(self.rolled.grid, influence=self._points(amplitudes))
+        grid = self.rolled.grid.under(self._points(amplitudes))
         vectors = np.einsum("kax,ka->kx", self.rolled.axes, forces).reshape(len(grid.angles), -1, 3)
         fields = SectionFields(grid, np.einsum("jpx,jcx->jpc", vectors, grid.wheel_axes))
         one_side = np.pi * np.linspace(0, 1, ANGLES + 1) ** 2

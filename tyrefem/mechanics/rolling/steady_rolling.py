@@ -135,6 +135,8 @@ class SteadyRolling(Brief):
                 grid, before, front = wider, None, None
                 last = None
                 continue
+            if self.shape is not None:
+                grid = grid.turned(self._turn(rolled))
             forces = rolled.contact.forces
             loosely = callable(self.friction) and number >= PATIENCE
             size, settled = (np.sum, SETTLED_LAW) if loosely else (np.max, SETTLED)
@@ -148,6 +150,13 @@ class SteadyRolling(Brief):
             before = forces
         raise InputError(f"forces, geometry and friction of the rolling contact do not settle in {ROUNDS} rounds")
 
+    def _common(self, grid: RollingGrid, axes: Array, last: RolledTyre | None) -> Array | None:
+        """(k, 3) motion of the tread where the pressed shape turns, as `ContactBody.common`; near a ``last`` round."""
+        if self.shape is None or last is None:
+            return None
+        stiffness = float((grid.shape_rate * grid.rate(last.vectors)).sum())
+        return grid.along(axes, grid.shape_rate) / math.sqrt(stiffness) if stiffness > 0 else None
+
     def _fronted(self, rolled: RolledTyre, used: Array | None) -> bool:
         """True if the front of the contact is where a solution took it to be."""
         if self.friction == 0:
@@ -156,7 +165,15 @@ class SteadyRolling(Brief):
 
     def _closed(self, motion: RollingMotion) -> bool:
         """True if a contact problem does not depend on its solution."""
-        return math.isinf(self.road.drum_diameter) and not motion.turn_slip and not callable(self.friction)
+        level = math.isinf(self.road.drum_diameter) and not motion.turn_slip
+        return level and not callable(self.friction) and self.shape is None
+
+    @staticmethod
+    def _turn(rolled: RolledTyre) -> float:
+        """Angle, rad, by which the pressed shape turns until the forces do no work in turning it further."""
+        forces = rolled.vectors
+        stiffness = float((rolled.grid.shape_rate * rolled.grid.rate(forces)).sum())
+        return float((rolled.grid.shape_rate * forces).sum()) / stiffness if stiffness > 0 else 0.0
 
     def _near(self, harmonics: int, deflection: float) -> RollingGrid:
         """The angles of the frictionless footprint, and `ANGLES_BEYOND` on both sides."""
@@ -189,7 +206,9 @@ class SteadyRolling(Brief):
         before = None if self.friction == 0 else front
         turns = grid.turns(axes)
         from_level = None if turns is None else axes @ grid.level_axes.T
-        body = ContactBody(grid.level_compliance, grid.upstream, turns, before, from_level)
+        body = ContactBody(
+            grid.level_compliance, grid.upstream, turns, before, from_level, self._common(grid, axes, last)
+        )
         free = grid.free_places
         rigid = body.change(grid.along(axes, free))
         per_radian = -grid.step * motion.road_per_travel(*grid.middles(moved))
