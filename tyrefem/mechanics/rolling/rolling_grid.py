@@ -43,8 +43,8 @@ class RollingGrid(Brief):
     last: int
     shape: PressedShape | None = None
     turn: float = 0.0
-    #: What does not depend on ``turn``; shared by the grids of `turned`.
-    _kept: dict[str, Any] = field(default_factory=dict, repr=False)
+    #: What does not depend on ``turn``, handed on by `turned`.
+    _kept: dict[str, Any] = field(default_factory=dict, init=False, repr=False)
 
     @property
     def step(self) -> float:
@@ -88,11 +88,13 @@ class RollingGrid(Brief):
 
     def under(self, influence: TreadInfluence) -> RollingGrid:
         """The same points with another compliance."""
-        return replace(self, influence=influence, _kept={})
+        return replace(self, influence=influence)
 
     def turned(self, more: float) -> RollingGrid:
         """The grid whose pressed shape has turned by ``more`` rad, at most to `LARGEST_TURN` in all."""
-        return replace(self, turn=min(max(self.turn + more, -LARGEST_TURN), LARGEST_TURN))
+        grid = replace(self, turn=min(max(self.turn + more, -LARGEST_TURN), LARGEST_TURN))
+        grid._kept.update(self._kept)
+        return grid
 
     @functools.cached_property
     def areas(self) -> Array:
