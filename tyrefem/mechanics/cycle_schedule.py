@@ -54,6 +54,16 @@ class CycleSchedule(Brief, PickledFields):
         """`weights` with a cache of the latest times: all zones and films use the same times."""
         return functools.lru_cache(REMEMBERED)(functools.partial(_weights, self.drive, self.knots))
 
+    def moment(self, time: float) -> tuple[int, float]:
+        """Phase, and the time in it, which is 0 where motion and strain cycle are constant within the phase."""
+        return self._moment(time)
+
+    @functools.cached_property
+    def _moment(self) -> Callable[[float], tuple[int, float]]:
+        pairs = zip(self.drive.phases, self.knots, strict=True)
+        constant = tuple(phase.steady_motion and len(knots) == 1 for phase, knots in pairs)
+        return functools.lru_cache(REMEMBERED)(functools.partial(_moment, self.drive, constant))
+
     def mean(self, quantity: Callable[[LoadCase], float], time: float) -> float:
         """A quantity of the load case at a time, e.g. its deflection."""
         return sum(weight * quantity(self.cases[phase][knot]) for phase, knot, weight in self.weights(time))
@@ -79,6 +89,11 @@ class CycleSchedule(Brief, PickledFields):
 
 def _rolling_radius(case: LoadCase) -> float:
     return case.rolling_radius
+
+
+def _moment(drive: Drive, constant: tuple[bool, ...], time: float) -> tuple[int, float]:
+    phase, _ = drive.locate(time)
+    return phase, 0.0 if constant[phase] else time
 
 
 def _weights(drive: Drive, knots: tuple[tuple[float, ...], ...], time: float) -> Weights:

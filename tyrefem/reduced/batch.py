@@ -9,7 +9,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.quantity import Ramp
 from tyrefem.reduced.balance import ReducedBalance, matrices_of
 from tyrefem.reduced.boundary_data import BoundaryData
 from tyrefem.reduced.budget import HeatFlows
@@ -64,8 +63,4 @@ class Batch:
 
 def steady(balance: ReducedBalance, number: int) -> bool:
     """Are the boundary data constant within a phase?"""
-    tyre = balance.tyre
-    phase = tyre.drive.phases[number]
-    if not tyre.acting.follows_drive or phase.slides or len(tyre.schedule.knots[number]) > 1:
-        return False
-    return all(value.constant for _, value in phase if isinstance(value, Ramp))
+    return balance.tyre.is_steady(number)

@@ -38,8 +38,8 @@ class HeatSource:
     _nodes: Array | None = field(default=None, init=False, repr=False)
     _energies: dict[tuple[int, int], Array] = field(default_factory=dict, init=False, repr=False)
     _spectra: dict[tuple[int, int], Array] = field(default_factory=dict, init=False, repr=False)
-    #: Latest time, revolutions per second and loss at the nodes: solvers ask for the same time repeatedly.
-    _losses: tuple[float, float, Array] | None = field(default=None, init=False, repr=False)
+    #: Latest moment (`CycleSchedule.moment`), revolutions per second and loss at the nodes.
+    _losses: tuple[tuple[int, float], float, Array] | None = field(default=None, init=False, repr=False)
 
     @property
     def lost_per_revolution(self) -> float:
@@ -80,12 +80,13 @@ class HeatSource:
             self._spectra.clear()
 
     def __call__(self, x: Array, t: float, T: Array) -> Array:
-        if self._nodes is not x or self._losses is None or self._losses[0] != t:
+        moment = self.schedule.moment(t)
+        if self._nodes is not x or self._losses is None or self._losses[0] != moment:
             revolutions = self.motion(t).revolutions_per_second
             if revolutions == 0:
                 return np.zeros(x.shape[1])
             work = self.energy_density if self.over_frequency is None else self.spectrum
-            self._losses = t, revolutions, self.lost_per_revolution * revolutions * work(x, t)
+            self._losses = moment, revolutions, self.lost_per_revolution * revolutions * work(x, t)
         _, revolutions, losses = self._losses
         if self.over_frequency is None:
             return losses * self.loss_tangent(T)

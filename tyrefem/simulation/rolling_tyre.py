@@ -203,10 +203,23 @@ class RollingTyre(Surroundings):
     def _of_time(self, law: Callable[[float], float]) -> Callable[[Any, float], float]:
         """A function f(x, t) that is constant in space.
 
-        Solvers use the same times repeatedly, so values are cached, unless they may depend on a state.
+        Solvers use the same times repeatedly, so values are cached, unless they may depend on a state. A steady phase
+        has one value.
         """
-        remembered = law if self.states is not None else functools.lru_cache(maxsize=REMEMBERED)(law)
-        return lambda _x, t: remembered(t)
+        if self.states is not None:
+            return lambda _x, t: law(t)
+        remembered = functools.lru_cache(maxsize=REMEMBERED)(law)
+        constant: dict[int, float] = {}
+
+        def value(_x: Any, t: float) -> float:
+            number, _ = self.drive.locate(t)
+            if not self.is_steady(number):
+                return remembered(t)
+            if number not in constant:
+                constant[number] = law(t)
+            return constant[number]
+
+        return value
 
     @functools.cached_property
     def hysteresis(self) -> dict[str, HeatSource]:

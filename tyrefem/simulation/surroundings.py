@@ -19,6 +19,7 @@ from tyrefem.inputs.drive import Drive
 from tyrefem.inputs.motion import WheelMotion
 from tyrefem.inputs.study import StudyData
 from tyrefem.mechanics.cycle_schedule import CycleSchedule, cycle_schedule, rated_case
+from tyrefem.quantity import Ramp
 from tyrefem.simulation.effect_states import EffectStates
 
 GAS, RIM = "contained-air", "rim"
@@ -54,6 +55,21 @@ class Surroundings:
         """The states of the effects; None if no effect has states."""
         effects = self.acting.with_states
         return EffectStates(self, effects) if effects else None
+
+    def is_steady(self, number: int) -> bool:
+        """Whether films, sinks and powers are constant within a phase of the drive."""
+        return self._steady[number]
+
+    @functools.cached_property
+    def _steady(self) -> tuple[bool, ...]:
+        follows = self.states is None and self.acting.follows_drive
+        return tuple(
+            follows
+            and not phase.slides
+            and len(knots) == 1
+            and all(value.constant for _, value in phase if isinstance(value, Ramp))
+            for phase, knots in zip(self.drive.phases, self.schedule.knots, strict=True)
+        )
 
     def state(self, effect: Any, name: str, t: float) -> Value:
         """A state of an effect at a time."""
