@@ -41,7 +41,7 @@ Places = tuple[tuple[tuple[float, float], ...], ...]
 #: point (an impossible tyre, for example).
 FOLLOWED, NOT_FOLLOWED, NO_ANSWER = 0, 1, 2
 #: Simulations at x = 0, by study, drive and readings: all diagnoses of one layout share them.
-_BASES: Cache[FixedStepRun] = Cache(size=8)
+_BASES: Cache[FixedStepRun] = Cache(size=12)
 
 
 @dataclass(frozen=True, eq=False)

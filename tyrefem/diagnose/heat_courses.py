@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.brief import Brief
+from tyrefem.brief import Brief, PickledFields
 
 Array = NDArray[np.float64]
 #: Prior sd of a run's deviation from the strength that all runs share, as a share of the prior sd of the strength.
@@ -24,7 +25,7 @@ PHASE, RUN = "phase ", "run "
 
 
 @dataclass(frozen=True, eq=False)
-class CourseGrid(Brief):
+class CourseGrid(Brief, PickledFields):
     """The fitted runs of a diagnosis on a grid of times.
 
     Parameters
@@ -64,12 +65,16 @@ class CourseGrid(Brief):
 
         ``course``: (number of the run, times s) -> strengths.
         """
+        return [hats @ course(number, fine) / hats.sum(axis=1) for number, (fine, hats) in enumerate(self._hats)]
+
+    @cached_property
+    def _hats(self) -> tuple[tuple[Array, Array], ...]:
+        """By run: many times (n_times,), s, and the hat of every knot (n_knots, n_times)."""
         result = []
-        for number, knots in enumerate(self.knots):
+        for knots in self.knots:
             fine = np.linspace(knots[0], knots[-1], 40 * (len(knots) - 1) + 1)
-            hats = np.array([np.interp(fine, knots, hat) for hat in np.eye(len(knots))])
-            result.append(hats @ course(number, fine) / hats.sum(axis=1))
-        return result
+            result.append((fine, np.array([np.interp(fine, knots, hat) for hat in np.eye(len(knots))])))
+        return tuple(result)
 
     def parts(self) -> list[slice]:
         """By run, the place of its knots among all."""

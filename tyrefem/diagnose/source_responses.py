@@ -22,8 +22,9 @@ Array = NDArray[np.float64]
 STEPS = 2.5
 #: Largest number of values that the sensitivities of one batch of sources may have.
 MOST_VALUES = 8_000_000
-#: Histories by drive, source, sensors and knots, shared by many diagnoses of one layout: 0.1 to 0.5 MB each.
-_HISTORIES: Cache[Array] = Cache(size=512)
+#: Histories by drive, source, sensors and knots, shared by many diagnoses of one layout: 0.1 to 0.5 MB each. A layout
+#: has about 400, and as many by a better strain law.
+_HISTORIES: Cache[Array] = Cache(size=1024)
 
 
 def source_responses(base: FixedStepRun, drive: DriveSampling, sources: Sequence[Unknown], knots: Array) -> Array:
