@@ -41,7 +41,8 @@ def test_speed_enters_at_most_nine_modules_none_twice(speed) -> None:
 
 
 def test_every_later_heat_source_comes_from_the_same_door(speed) -> None:
-    assert len(speed.later) > 10
+    # In a steady phase every further zone asks once.
+    assert len(speed.later) >= 4
     tail = speed.first.visits[-3:]
     assert tail[0] == "tyrefem.inputs.motion"
     assert {walk.visits for walk in speed.later} == {tail}
