@@ -21,7 +21,8 @@ class Camber(Effect):
     sentence: ClassVar[str] = "The wheel leans, so that one shoulder deflects more than the other."
     source: ClassVar[str] = (
         "estimate: each side deflects by D + z_s tan(angle), strain energy goes with its square; alignment is good "
-        "to a degree or two"
+        "to a degree or two; beside rolling with friction the belt's edges are within 30 % to 4 degrees "
+        "(docs/evidence/rolling-friction.md)"
     )
     heat_of_temperature: ClassVar[bool] = False
     free_rolling: ClassVar[bool] = False

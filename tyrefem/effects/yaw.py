@@ -22,7 +22,8 @@ class Yaw(Effect):
     sentence: ClassVar[str] = "The wheel runs at a slip angle: the tread scrubs sideways, most on the loaded side."
     source: ClassVar[str] = (
         "Roberts as for tread-slip; estimate: friction rises linearly from shoulder to shoulder; full sliding at 1 "
-        "degree is 1.7 % of the speed"
+        "degree is 1.7 % of the speed; beside rolling with friction its heat is 2.7 times too large at 1 degree, right "
+        "near 3 and 0.6 of it at 6, and the hysteresis of cornering is missing (docs/evidence/rolling-friction.md)"
     )
     free_rolling: ClassVar[bool] = False
     signature: ClassVar[Signature] = Signature(
