@@ -316,20 +316,28 @@ class ForwardModel(Brief):
     def reduced_jacobian(
         self, number: int, modes: Modes, unknowns: Sequence[Unknown], at: Values
     ) -> tuple[Array, Array]:
-        """Status (1,), see `FOLLOWED`, and `jacobian` by difference quotients of the drive's reduced model."""
+        """Status (1,), see `FOLLOWED`, and `jacobian` by difference quotients of the drive's reduced model.
+
+        Columns of a further effect with which no tyre can be built are NaN.
+        """
         base, drive = self.base(number), self._reduced_drive(number, modes)
         here = self.with_values(base.study, at, base.study)
-        there = [
-            (
-                self.with_values(base.study, {**at, unknown: at.get(unknown, 0.0) + unknown.step}, here),
-                unknown.measures or not unknown.acts_in(base.study.card.run),
-            )
-            for unknown in unknowns
-        ]
-        slopes = drive.slopes(here, there, [unknown.step for unknown in unknowns])
+        there: dict[int, tuple[StudyData, bool]] = {}
+        for column, unknown in enumerate(unknowns):
+            try:
+                study = self.with_values(base.study, {**at, unknown: at.get(unknown, 0.0) + unknown.step}, here)
+            except InputError:
+                if unknown.effect is None or unknown.origin is not None:
+                    raise
+                continue
+            there[column] = study, unknown.measures or not unknown.acts_in(base.study.card.run)
+        slopes = drive.slopes(here, list(there.values()), [unknowns[column].step for column in there])
+        jacobian = np.full((self.drives[number].size, len(unknowns)), np.nan)
         if slopes is None:
-            return np.array([NOT_FOLLOWED]), np.zeros((self.drives[number].size, len(unknowns)))
-        return np.array([FOLLOWED]), np.column_stack([self.blocks(number, base.grid, slope) for slope in slopes])
+            return np.array([NOT_FOLLOWED]), jacobian
+        for column, slope in zip(there, slopes, strict=True):
+            jacobian[:, column] = self.blocks(number, base.grid, slope)
+        return np.array([FOLLOWED]), jacobian
 
     @functools.cached_property
     def _reduced(self) -> Cache[ReducedDrive]:

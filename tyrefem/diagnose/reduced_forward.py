@@ -123,10 +123,10 @@ class ReducedDrive:
         moved = [number for number, (_, measures) in enumerate(there) if not measures]
         tyre = RollingTyre(here, self.base.tyre)
         tyres = [tyre, *(RollingTyre(there[number][0], tyre) for number in moved)]
-        groups, _ = self._integrated(tyres)
-        if len(groups) != 1 or len(groups[0][0]) != len(tyres):
+        together = self._together(tyres)
+        if together is None:
             return None
-        numbers, solution = groups[0]
+        numbers, solution = together
         states, balances = solution.states(self.base.grid), solution.batch.balances
         place = {number: where for where, number in enumerate(numbers)}
         at = {number: place[order] for order, number in enumerate(moved, start=1)}
@@ -140,6 +140,14 @@ class ReducedDrive:
             {name: (changed[name] - first[name]) / step for name in first}
             for changed, step in zip(others, steps, strict=True)
         ]
+
+    def _together(self, tyres: Sequence[RollingTyre]) -> tuple[list[int], BatchSolution] | None:
+        """The solution of all tyres as one batch; None if one is not reducible, before anything is integrated."""
+        tolerance, most = self.settings.reduced_time_tolerance, self.settings.batch_size
+        with contextlib.suppress(InputError):
+            for numbers, part in batch_solutions(self.model, tyres, tolerance, most):
+                return (numbers, part) if isinstance(part, BatchSolution) and len(numbers) == len(tyres) else None
+        return None
 
     def _integrated(self, tyres: Sequence[RollingTyre]) -> tuple[list[tuple[list[int], BatchSolution]], list[int]]:
         """(numbers of the tyres, solution) of each batch, and the numbers of irreducible tyres."""

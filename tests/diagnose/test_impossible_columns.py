@@ -1,0 +1,32 @@
+"""Sensitivities at a fit leave out effects that cannot act beside those of the fit."""
+
+from __future__ import annotations
+
+import numpy as np
+
+import tyrefem as tf
+from tyrefem.diagnose.candidates import catalogue_candidates
+from tyrefem.diagnose.evaluations import Evaluations
+from tyrefem.diagnose.forward_model import FOLLOWED, ForwardModel
+from tyrefem.diagnose.isolability import planned
+from tyrefem.diagnose.sensitivities import responses, unknowns_of
+from tyrefem.diagnose.settings import DiagnosisSettings
+
+
+def test_a_second_swap_of_a_sensor_has_no_column_by_either_model() -> None:
+    study = tf.study("hidden-effect", {"mesh.size": "12 mm"})
+    model = ForwardModel(study, planned(study)[:1], settings=DiagnosisSettings(mesh_size="12 mm"))
+    base = unknowns_of(study, list(study.sensors), ())[0][:4]
+    (known,) = responses(Evaluations(model), base)
+    swaps = [each.presence[0] for each in catalogue_candidates(study) if each.name == "swapped-channels"]
+    first = swaps[0]
+    shared = next(swap for swap in swaps[1:] if {*dict(first.choice).values()} & {*dict(swap.choice).values()})
+    at = {first: 1.0, base[0]: 0.01}
+    status, reduced = model.reduced_jacobian(0, known.modes, (*base, shared), at)
+    simulated = model.jacobian(0, (*base, shared), at)
+    assert status[0] == FOLLOWED
+    for jacobian in (reduced, simulated):
+        assert np.isnan(jacobian[:, -1]).all()
+        assert np.isfinite(jacobian[:, :-1]).all()
+    largest = np.abs(simulated[:, :-1]).max(axis=0)
+    assert (np.abs(reduced - simulated)[:, :-1].max(axis=0) < 0.02 * largest.max()).all()
