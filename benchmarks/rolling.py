@@ -1,9 +1,10 @@
 """Rolling with friction: closed forms, power balance, and the measured 205/60R15 over its loads.
 
-    python benchmarks/rolling.py [--closed-forms] [--loss] [--measured] [--standing] [--large] [--pictures]
+    python benchmarks/rolling.py [--closed-forms] [--loss] [--measured] [--standing] [--large] [--resistance]
+        [--pictures]
 
 Writes docs/evidence/tables/rolling-closed-forms.csv, rolling-loss.csv, rolling-measured.csv,
-rolling-standing.csv and rolling-large.csv. Nothing is fitted.
+rolling-standing.csv, rolling-large.csv and rolling-resistance-friction.csv. Nothing is fitted.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ import csv
 import math
 import os
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -268,6 +270,31 @@ def large() -> None:
             print(*words, flush=True)
 
 
+def resistance() -> None:
+    """Write the rolling resistance of the measured tyre without and with friction."""
+    study = tf.study(STUDY, {"mechanics.rolling": True})
+    with (TABLES / "rolling-resistance-friction.csv").open("w", encoding="utf-8", newline="") as stream:
+        table = csv.writer(stream, lineterminator="\n")
+        table.writerow(["load [N]", "harmonics", *(
+            f"{name} [N]" for name in (
+                "free rolling by loss", "rubber without friction", "rubber with friction", "friction", "axle",
+            )
+        )])  # fmt: skip
+        for load in (2000.0, 4000.0, 6000.0):
+            wheel = wheel_on_road(study, load=load, friction=1.0)
+            alone = wheel.pressed.turning.resistance.by_loss
+            for harmonics in (80, 120):
+                free = wheel.free(harmonics)
+                smooth = replace(wheel.rolling, friction=0.0, influence=wheel.rolling.points)
+                loads, guess = RollingLoads(load=load, travel=free.travel), (free.deflection, free.travel)
+                slippery = smooth.roll(RollingMotion(speed=wheel.speed), loads, harmonics, guess=guess)
+                powers = (slippery.loss_power, free.loss_power, free.friction_power, free.lost_power)
+                forces = (alone, *(power / wheel.speed for power in powers))
+                words = [f"{load:g}", str(harmonics), *(f"{force:.2f}" for force in forces)]
+                table.writerow(words)
+                print(*words, flush=True)
+
+
 def pictures() -> None:
     """Draw the pictures of the pages."""
     from tyrefem.reports.figures.rolling import contact_figure, slip_curve_figure
@@ -289,6 +316,7 @@ def main() -> None:
         "measured": measured,
         "standing": standing,
         "large": large,
+        "resistance": resistance,
         "pictures": pictures,
     }
     for name in parts:
