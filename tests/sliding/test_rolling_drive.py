@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
+import pickle
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ import pytest
 import tyrefem as tf
 from tyrefem.errors import InputError
 from tyrefem.mechanics.footprint.strain_harmonics import StrainHarmonics
+from tyrefem.mechanics.nearby_cycles import NearbyCycles, SolvedCycles
 from tyrefem.mechanics.rolling.roll import RolledStudy, WheelOnRoad
 from tyrefem.mechanics.rolling.rolled_footprint import RolledFootprint
 from tyrefem.mechanics.rolling.rolling_motion import RollingMotion
@@ -144,6 +146,39 @@ def test_hysteresis_of_a_turning_tyre_is_the_loss_of_roll():
     result = study(turning, slip_angle="3 deg").run()
     rolled = result.study.roll(slip_angle=math.radians(3))
     assert result.cold_power(1.0) == pytest.approx(rolled.state.loss_power, rel=0.02)
+
+
+def test_friction_over_speed_follows_speed_and_temperature_of_the_drive():
+    """Sliding speeds below the peak: faster means more grip, warmer means less."""
+    law = {
+        "law": "savkoor", "coefficient": 1.2, "standstill": 0.4, "peak_speed": "20 m/s", "width": 0.5,
+        "at": "30 degC", "decade": "20 K", "source": "estimate: example",
+    }  # fmt: skip
+    slow = study({**BASE, "materials.tread": {"base": "nasa-tread", "friction": law}}, slip_ratio="10 %")
+    fast, warm = slow.replace({"drive.speed": "40 mph"}), slow.replace({"drive.initial": "60 degC"})
+    slow, fast, warm = (each.run().tyre.schedule.cycles[0][0].friction.friction for each in (slow, fast, warm))
+    assert warm < 0.97 * slow
+    assert slow < 0.98 * fast
+
+
+def test_a_result_keeps_its_friction_when_it_is_pickled():
+    result = run(slip_angle="3 deg")
+    again = pickle.loads(pickle.dumps(result))
+    assert again.sliding.phases == result.sliding.phases
+
+
+def test_strain_cycles_nearby_have_their_friction(tmp_path):
+    """A stiffer tread: interpolated from the solution one standard deviation away, and read again from its file."""
+    tread = {"base": "nasa-tread", "friction": {"coefficient": 1.0, "source": "estimate: example"}}
+    uncertain = {"uncertainty": {"materials.tread.shear_modulus.value": 0.1}}
+    middle = study({**BASE, "materials.tread": tread, **uncertain}, slip_ratio="3 %")
+    near = NearbyCycles(middle, SolvedCycles(tmp_path))
+    (number,) = near.numbers
+    raised = middle.replace(number.changes(1 + number.sd))
+    works = [NearbyCycles(middle, SolvedCycles(tmp_path)).schedule_of(raised).cycles[0][0].friction.total for _ in "12"]
+    assert works[0] == pytest.approx(works[1], rel=1e-12)
+    assert works[0] == pytest.approx(raised.run().tyre.schedule.cycles[0][0].friction.total, rel=1e-9)
+    assert works[0] != pytest.approx(near.schedule.cycles[0][0].friction.total, rel=1e-3)
 
 
 def test_a_study_without_the_law_is_not_changed_by_it():

@@ -19,8 +19,8 @@ class TreadSlip(Effect):
     source: ClassVar[str] = (
         "Roberts, Temperature rise when rubber slides, eqs 2 and 5; estimate: mu = 0.8, contact pressure = "
         "inflation pressure, dense asphalt (1732 J/m2/K/s^0.5); free rolling scrubs by 0.1 to 1 %; "
-        "beside rolling with friction its heat is 2.7 times too large at a slip of 1 %, right near 3 % and 0.6 of it at "
-        "10 %, and the hysteresis of braking is missing (docs/evidence/rolling-friction.md)"
+        "beside rolling with friction its heat is 2.7 times too large at a slip of 1 %, right near 3 % and 0.6 of it "
+        "at 10 %, and the hysteresis of braking is missing (docs/evidence/rolling-friction.md)"
     )
     free_rolling: ClassVar[bool] = False
     signature: ClassVar[Signature] = Signature(signs={"surface": 1, "shoulder-outer": 1})

@@ -200,10 +200,14 @@ def _speed(case: LoadCase) -> float:
 
 
 def _tyre_key(study: StudyData, case: LoadCase) -> Hashable:
-    frictions = repr({region: card.friction for region, card in study.materials.items()})
-    key: tuple[Hashable, ...] = (inputs(study), frictions, case.pressure, case.drum_diameter, _speed(case))
+    frictions = {region: card.friction for region, card in study.materials.items()}
+    # A coefficient that is not constant, and loss, are those of the drive's initial temperature.
+    warmth = (study.card.drive.initial, tuple((study.parts.temperatures or {}).items()))
+    key: tuple[Hashable, ...] = (inputs(study), repr(frictions), case.pressure, case.drum_diameter, _speed(case))
+    if any(law is not None and law.law != "constant" for law in frictions.values()):
+        key += warmth
     if study.card.mechanics.rolling:
-        key += (repr(values_read(FEM_ROLLING, study.materials)), study.card.drive.initial, _given(case))
+        key += (repr(values_read(FEM_ROLLING, study.materials)), *warmth, _given(case))
     return key
 
 
