@@ -10,7 +10,7 @@ from tyrefem.api import Study
 from tyrefem.diagnose.evaluations import Evaluations
 from tyrefem.diagnose.forward_model import ForwardModel
 from tyrefem.diagnose.isolability import planned
-from tyrefem.diagnose.sensitivities import responses, unknowns_of
+from tyrefem.diagnose.sensitivities import shared_responses, unknowns_of
 from tyrefem.diagnose.settings import DiagnosisSettings
 from tyrefem.simulation.sensors import lagged, recorded, recorded_change
 
@@ -46,9 +46,9 @@ def test_models_of_one_layout_share_the_readings_by_another_law(study: Study) ->
 def test_models_of_one_layout_share_the_responses(study: Study) -> None:
     unknowns, _ = unknowns_of(study, list(study.sensors), ())
     some = unknowns[:3]
-    first = responses(Evaluations(model_of(study)), some)
-    assert responses(Evaluations(model_of(study)), some) is first
-    assert responses(Evaluations(model_of(study)), unknowns[:2]) is not first
+    first = shared_responses(Evaluations(model_of(study)), some)
+    assert shared_responses(Evaluations(model_of(study)), some) is first
+    assert shared_responses(Evaluations(model_of(study)), unknowns[:2]) is not first
 
 
 def test_readings_of_many_columns_are_those_of_each(study: Study) -> None:

@@ -133,22 +133,22 @@ def unknowns_of(
     return (*nuisance, *effects, *patches(study, settings), *energy_shapes(study, settings)), len(nuisance)
 
 
-def responses(
+def shared_responses(
     evaluations: Evaluations, unknowns: tuple[Unknown, ...], tick: Tick | None = None
 ) -> tuple[DriveResponse, ...]:
-    """The response of every drive: the costly part of a diagnosis, independent of data.
-
-    Diagnoses of one layout share them, unless they are stored for an interrupted diagnosis.
-    """
+    """`responses`, which diagnoses of one layout share; those of a stored diagnosis are not kept."""
     if evaluations.store is not None:
-        return _responses(evaluations, unknowns, tick)
+        return responses(evaluations, unknowns, tick)
     model = evaluations.model
     drives = tuple((drive.name, repr(drive.drive)) for drive in model.drives)
     key = study_digest(model.study), drives, model.settings.of_simulations, unknowns
-    return _RESPONSES.get(key, lambda: _responses(evaluations, unknowns, tick))
+    return _RESPONSES.get(key, lambda: responses(evaluations, unknowns, tick))
 
 
-def _responses(evaluations: Evaluations, unknowns: tuple[Unknown, ...], tick: Tick | None) -> tuple[DriveResponse, ...]:
+def responses(
+    evaluations: Evaluations, unknowns: tuple[Unknown, ...], tick: Tick | None = None
+) -> tuple[DriveResponse, ...]:
+    """The response of every drive: the costly part of a diagnosis, independent of data."""
     model = evaluations.model
     count = len(model.drives)
     done = 0

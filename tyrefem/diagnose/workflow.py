@@ -38,7 +38,7 @@ from tyrefem.diagnose.residuals import Residuals, residuals_of
 from tyrefem.diagnose.robustness import LEAST_P, Robustness
 from tyrefem.diagnose.runs import MeasuredDrive, measured_drive, with_noise_of_data
 from tyrefem.diagnose.selection import SelectionProblem
-from tyrefem.diagnose.sensitivities import responses, sensitivities, unknowns_of
+from tyrefem.diagnose.sensitivities import responses, sensitivities, shared_responses, unknowns_of
 from tyrefem.diagnose.settings import DiagnosisSettings
 from tyrefem.diagnose.strain_law_study import by_law
 from tyrefem.diagnose.support import Support, supports
@@ -152,7 +152,9 @@ def _look(
         work.tick(f"resuming with {work.store.resumed} finished simulations")
     unknowns, nuisance = unknowns_of(study, {name for run in runs for name in run.parts()}, in_all_runs, settings)
     with evaluating(model, work.workers, work.store) as evaluations:
-        known = tuple(work.known or responses(evaluations, unknowns, work.tick))
+        # By a better strain law, all blind cases of a layout have the same study.
+        computed = shared_responses if law_replaced else responses
+        known = tuple(work.known or computed(evaluations, unknowns, work.tick))
         of_single_runs = [unknown for each in in_one_run for unknown in (*each.amplitudes, *each.presence)]
         sensitive = sensitivities(model.drives, unknowns, nuisance, known).in_single_runs(of_single_runs)
         candidates, further_notes = simulated(candidates, sensitive.failed)
