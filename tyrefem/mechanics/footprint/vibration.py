@@ -165,10 +165,11 @@ class Vibration(Brief):
         ``radial``, ``lateral``, ``circumferential``: share of each component in these elements' energy; ``belt``: their
         energy over the body's, relative to their share of the mass.
         """
-        mass = self._mass_of(members)
-        parts = [float(mode.shape[c::COMPONENTS] @ (mass @ mode.shape)[c::COMPONENTS]) for c in range(COMPONENTS)]
+        elements = self.harmonics.elements
+        weights = self.density * elements.weights
+        at_points = elements.values @ mode.shape.reshape(-1, COMPONENTS)[elements.element_nodes[members]]
+        parts = [float(part) for part in np.einsum("eq,eqc->c", weights[members], at_points**2)]
         total = sum(parts)
-        weights = self.density * self.harmonics.elements.weights
         motion = total / float(mode.shape @ self.mass @ mode.shape) * float(weights.sum() / weights[members].sum())
         names = ("radial", "lateral", "circumferential")
         return {**{name: part / total for name, part in zip(names, parts, strict=True)}, "belt": motion}

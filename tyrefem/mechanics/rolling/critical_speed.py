@@ -35,8 +35,10 @@ SHORTEST = 4.0
 AMONG = 8
 #: Relative accuracy of a critical speed; most shapes of the spinning tyre that are tried.
 ACCURACY, MOST = 1e-3, 24
-#: Waves up to this factor above the slowest one are followed as the shape changes.
+#: Waves up to this factor above the slowest one are given beside it.
 NEARLY = 1.5
+#: As the shape changes by a step of W, a wave follows by at most this many steps.
+FOLLOWS = 1.2
 #: Highest speed that is tried, m/s.
 FASTEST = 200.0
 
@@ -174,11 +176,18 @@ class _Shape:
 
     tyre: Inflation
     waves: SteadyWaves
+    _slowest: dict[int, tuple[CriticalWave, ...]] = field(default_factory=dict)
+
+    def slowest(self, harmonic: int, count: int) -> tuple[CriticalWave, ...]:
+        """The ``count`` slowest waves of each family, or more, in order of speed, with a cache."""
+        if len(self._slowest.get(harmonic, ())) < count:
+            self._slowest[harmonic] = self.waves.waves(harmonic, count)
+        return self._slowest[harmonic]
 
     def of_belt(self, harmonic: int) -> CriticalWave | None:
         """The slowest wave of the belt; None: it is not among the slowest waves."""
         belt = belt_elements(self.tyre)
-        for wave in self.waves.waves(harmonic, AMONG):
+        for wave in self.slowest(harmonic, AMONG):
             shares = self.waves.vibration.shares(wave.mode, belt)
             if shares["belt"] >= BELT_SHARE and shares["radial"] >= RADIAL_SHARE:
                 return wave
@@ -186,7 +195,7 @@ class _Shape:
 
     def of_any(self, harmonic: int) -> CriticalWave | None:
         """The slowest wave."""
-        return self.waves.waves(harmonic, 1)[0]
+        return self.slowest(harmonic, 1)[0]
 
     def standing(self, wave: CriticalWave, by_harmonic: Mapping[int, float]) -> StandingSpeed:
         """The wave with its place."""
@@ -210,10 +219,13 @@ class _Search:
 
     def shape(self, angular_speed: float) -> _Shape:
         """The tyre that spins with W, rad/s, with a cache."""
-        from tyrefem.mechanics.solid.inflation import inflate
+        from tyrefem.mechanics.solid.inflation import inflate, spin
 
         if angular_speed not in self._shapes:
-            tyre = inflate(self.study, self.pressure, self.mesh, angular_speed=angular_speed)
+            if angular_speed:
+                tyre = spin(self.study, self.shape(0.0).tyre, angular_speed)
+            else:
+                tyre = inflate(self.study, self.pressure, self.mesh)
             waves = SteadyWaves(Vibration(Harmonics(tyre.state), densities(self.study, tyre)))
             self._shapes[angular_speed] = _Shape(tyre, waves)
         return self._shapes[angular_speed]
@@ -229,9 +241,11 @@ class _Search:
         """The first W that is a critical speed of its own shape; None: there is none up to `FASTEST`.
 
         W_c(W) of the shape at W rises with W and exceeds it at rest: secant steps until W_c(W) < W, then within the
-        bracket. Where the slowest wave's kind changes, W_c jumps; the speed of the jump counts.
+        bracket. Where the slowest wave's kind changes, W_c jumps; the speed of the jump counts. A harmonic's W_c rises with
+        W, by at most `FOLLOWS` times as much; only harmonics that can become the least are worked out again.
         """
-        orders, speed = list(range(2, highest + 1)), 0.0
+        known: dict[int, tuple[float, float]] = {}
+        near, speed = list(range(2, highest + 1)), 0.0
         below: tuple[float, float] = (0.0, np.inf)
         above: tuple[float, float] | None = None
         for _ in range(MOST):
@@ -244,17 +258,19 @@ class _Search:
             radius = float(shape.tyre.places[0].max())
             if speed * radius > FASTEST:
                 return None
-            waves = {n: wave for n in orders if (wave := kind(shape, n)) is not None}
+            waves = {n: wave for n in near if (wave := kind(shape, n)) is not None}
             if not waves:
                 return None
             wave = min(waves.values(), key=lambda wave: wave.angular_speed)
-            speeds = {n: wave.angular_speed for n, wave in waves.items()}
+            known = {n: pair for n, pair in known.items() if n not in near}
+            known |= {n: (speed, wave.angular_speed) for n, wave in waves.items()}
             excess = wave.angular_speed - speed
             narrow = above is not None and above[0] - below[0] <= ACCURACY * speed
             if abs(excess) <= ACCURACY * speed or (narrow and excess < 0):
-                return shape.standing(wave, speeds)
-            orders = [n for n in orders if speeds.get(n, np.inf) <= NEARLY * wave.angular_speed]
-            before = below
+                others = [n for n, (_, last) in known.items() if n not in waves and last <= NEARLY * wave.angular_speed]
+                waves |= {n: other for n in others if (other := kind(shape, n)) is not None}
+                return shape.standing(wave, {n: other.angular_speed for n, other in waves.items()})
+            before, here = below, speed
             below, above = (below, (speed, excess)) if excess < 0 else ((speed, excess), above)
             if above is None:
                 slope = (excess - before[1]) / (speed - before[0]) if speed else -1.0
@@ -262,4 +278,6 @@ class _Search:
             else:
                 share = below[1] / (below[1] - above[1])
                 speed = above[0] if narrow else below[0] + min(max(share, 0.1), 0.9) * (above[0] - below[0])
+            least = wave.angular_speed + FOLLOWS * max(speed - here, 0.0)
+            near = [n for n, (at, last) in known.items() if last - FOLLOWS * max(at - speed, 0.0) <= least]
         return None

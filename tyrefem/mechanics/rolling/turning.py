@@ -135,15 +135,15 @@ def turn(order: PressOrder, speed: float) -> Turning:
     ------
     InputError : no equilibrium; a load that the tyre cannot carry; a speed at which the tread itself is not stable.
     """
-    from tyrefem.mechanics.solid.inflation import inflate
+    from tyrefem.mechanics.solid.inflation import inflate, spin
 
     study, mesh, pressure, road, load = order.study, order.mesh, order.pressure, order.road, order.load
     still = inflate(study, pressure, mesh)
     try:
-        spinning = inflate(study, pressure, mesh, angular_speed=_spin(speed, float(still.places[0].max())))
+        spinning = spin(study, still, _spin(speed, float(still.places[0].max())))
         rough = Pressing(spinning.state, road)
         first = rough.at_load(load, ROUGH) if load is not None else rough.at_deflection(order.deflection or 0.0, ROUGH)
-        tyre = inflate(study, pressure, mesh, angular_speed=_spin(speed, first.rolling_radius))
+        tyre = spin(study, still, _spin(speed, first.rolling_radius))
     except InputError as error:
         raise _beyond(speed, error) if error.field == "speed" else error from None
     pressing = Pressing(tyre.rolling_state, road)

@@ -202,3 +202,20 @@ def inflate(
     except InputError as error:
         raise error if error.file else InputError(error.message, field=error.field, file=study.file) from None
     return Inflation(warmed, state, study.section.half)
+
+
+def spin(study: StudyData, still: Inflation, angular_speed: float, choice: NewtonChoice | None = None) -> Inflation:
+    """A study's inflated tyre that does not spin, set spinning: as `inflate` with ``angular_speed``, which is not 0.
+
+    Raises
+    ------
+    InputError : no equilibrium at this speed.
+    """
+    from tyrefem.mechanics.solid.tyre_body import reference_density
+
+    body = still.body
+    spinning = replace(body, centrifugal=Centrifugal(body.rings, reference_density(study, body), angular_speed))
+    try:
+        return Inflation(spinning, spun_equilibrium(spinning, still.equilibrium, choice), still.half)
+    except InputError as error:
+        raise error if error.file else InputError(error.message, field=error.field, file=study.file) from None
