@@ -14,6 +14,7 @@ from tyrefem.output.folder import results_folder
 
 if TYPE_CHECKING:
     from tyrefem.api import Study
+    from tyrefem.mechanics.rolling.amplification import Amplification
     from tyrefem.mechanics.rolling.critical_speed import CriticalSpeed
 
 
@@ -27,13 +28,17 @@ def print_critical_speeds(
     quiet: bool,
     as_json: bool,
     pictures: bool,
+    rise: bool = False,
 ) -> None:
     """Work out, write and print the critical speeds of all pressures and temperatures."""
+    from tyrefem.mechanics.rolling import amplification
     from tyrefem.mechanics.rolling.critical_speed import NEEDS, critical_speed
     from tyrefem.quantity import Unit
     from tyrefem.reports.critical_speed import FILES, write_files
 
     NEEDS.check(study)
+    if rise:
+        amplification.check(study)
     given = _numbers("--pressure", pressures, Unit("Pa", gt=0))
     warmed = _numbers("--temperature", temperatures, Unit("degC"))
     options = {"pressure": pressures, "temperature": temperatures}
@@ -45,13 +50,23 @@ def print_critical_speeds(
     ):
         try:
             results = [critical_speed(study, pressure=p, temperature=t) for p in given for t in warmed]
+            rises = [
+                amplification.amplification(
+                    result.study, wave.speed, pressure=result.pressure, temperature=result.temperature
+                )
+                for result in results
+                if rise and (wave := result.belt or result.any_wave) is not None
+            ]
         except InputError as error:
             raise _placed(error, study, options) from None
-        write_files(results, folder, pictures=pictures)
+        write_files(results, folder, rises=rises, pictures=pictures)
     if as_json:
-        print_json({"study": study.name, "critical": [result.row() for result in results]})
+        rows = {"study": study.name, "critical": [result.row() for result in results]}
+        print_json({**rows, "rises": [each.summary() for each in rises]} if rise else rows)
         return
     typer.echo(_words(results))
+    for each in rises:
+        typer.echo(_rise_words(each))
     typer.echo(f"results in {folder}")
 
 
@@ -96,6 +111,24 @@ def _words(results: list[CriticalSpeed]) -> str:
     slow = min((result.belt.speed for result in results if result.belt is not None), default=None)
     if slow is not None and fastest > slow:
         lines.append(f"  warning: the drive's {fastest:.4g} m/s are above the critical speed of {slow:.4g} m/s")
+    return "\n".join(lines)
+
+
+def _rise_words(rises: Amplification) -> str:
+    lines = [f"  heat and strain over those without inertia, {rises.pressure / 1e3:.0f} kPa, {rises.load / 1e3:.3g} kN"]
+    for rise in rises.rises:
+        doubt = "  loss alone limits some waves" if rise.limited else ""
+        lines.append(f"    {rise.speed:6.1f} m/s  heat {rise.loss:.3f}  strain {rise.strain:.3f}{doubt}")
+    if rises.refused is not None:
+        lines.append(f"    {rises.refused[0]:6.1f} m/s  no solution: {rises.refused[1]}")
+    onset = rises.onset
+    if onset is None:
+        lines.append("    the heat rises too little for the effect standing-wave")
+    else:
+        lines.append(
+            f"    nearest effect: standing-wave with gain = {onset.gain:.3g}, "
+            f'critical_speed = "{onset.critical_speed:.3g} m/s"; its factor is off by up to {onset.error:.2f}'
+        )
     return "\n".join(lines)
 
 

@@ -75,6 +75,10 @@ def press(
     temperature: Annotated[
         str | None, typer.Option(help="With --critical-speed: temperatures of the moduli, e.g. '25 degC, 80 degC'.")
     ] = None,
+    rise: Annotated[
+        bool,
+        typer.Option("--rise", help="With --critical-speed: how heat and strain rise below it (rise.csv, rise.png)."),
+    ] = False,
     pictures: Annotated[bool, typer.Option(help="Draw the PNG pictures.")] = True,
     vtk: Annotated[bool, typer.Option(help="Write the whole deformed tyre, tyre.vtu.")] = True,
     out: Annotated[Path | None, typer.Option("--out", help="Folder; default: results/STUDY-press.")] = None,
@@ -99,9 +103,12 @@ def press(
             raise InputError("no road acts on critical speeds; leave it out with --critical-speed", field=refused[0])
         loaded = load_study(study, settings(changes), case)
         print_critical_speeds(
-            loaded, pressure, temperature, out, force=force, quiet=quiet, as_json=as_json, pictures=pictures
-        )
+            loaded, pressure, temperature, out, force=force, quiet=quiet, as_json=as_json, pictures=pictures,
+            rise=rise,
+        )  # fmt: skip
         return
+    if rise:
+        raise InputError("is for --critical-speed", field="--rise")
     if temperature is not None:
         raise InputError("is for --critical-speed; a footprint has its cards' moduli", field="--temperature")
     texts = {"pressure": pressure, "load": load, "deflection": deflection, "drum_diameter": drum, "camber": camber}

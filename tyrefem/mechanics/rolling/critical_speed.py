@@ -241,8 +241,10 @@ class _Search:
         """The first W that is a critical speed of its own shape; None: there is none up to `FASTEST`.
 
         W_c(W) of the shape at W rises with W and exceeds it at rest: secant steps until W_c(W) < W, then within the
-        bracket. Where the slowest wave's kind changes, W_c jumps; the speed of the jump counts. A harmonic's W_c rises with
-        W, by at most `FOLLOWS` times as much; only harmonics that can become the least are worked out again.
+        bracket. Where the slowest wave's kind changes, W_c jumps; the speed of the jump counts.
+
+        A harmonic's W_c rises with W, by at most `FOLLOWS` times as much; only harmonics that can become the least are
+        worked out again.
         """
         known: dict[int, tuple[float, float]] = {}
         near, speed = list(range(2, highest + 1)), 0.0
