@@ -8,15 +8,18 @@ import math
 import numpy as np
 import pytest
 
+from tyrefem.mechanics.footprint.compliance import TreadCompliance
 from tyrefem.mechanics.footprint.contact import Pressing
 from tyrefem.mechanics.footprint.example_tyre import PlainTyre
 from tyrefem.mechanics.footprint.footprint import Footprint
 from tyrefem.mechanics.footprint.harmonic_balance import Balance
 from tyrefem.mechanics.footprint.road import Road
+from tyrefem.mechanics.rolling.lossy_harmonics import LossyHarmonics
 from tyrefem.mechanics.rolling.pressed_shape import PressedShape
 from tyrefem.mechanics.rolling.rolled import RolledTyre
 from tyrefem.mechanics.rolling.rolling_motion import RollingMotion
 from tyrefem.mechanics.rolling.steady_rolling import RollingLoads, SteadyRolling
+from tyrefem.mechanics.rolling.tread_influence import TreadInfluence
 
 DEFLECTION, HARMONICS = 0.006, 24
 
@@ -89,6 +92,22 @@ def test_the_axle_puts_in_what_friction_takes_out(
     assert abs(work) < 1e-5 * float(np.abs(rolled.vectors * rolled.grid.shape_rate).sum())
     if slip is not None:
         assert rolled.grid.turn * slip > 0
+
+
+def test_with_loss_the_rubber_takes_its_share() -> None:
+    """d is that without loss: what the rubber loses is the axle's work beside that of friction."""
+    pressing, footprint = deep(math.inf)
+    state = pressing.state
+    lossy = LossyHarmonics(state, angular_speed=60.0, tangents=lambda _: np.full(len(state.bulk), 0.15))
+    points, elastic = TreadInfluence(TreadCompliance(lossy)), TreadInfluence(pressing.tread)
+    tyre = SteadyRolling(pressing, 0.0, 0.8, points, PressedShape(footprint, elastic))
+    loads, guess = RollingLoads(load=footprint.load, torque=0.0), (footprint.deflection, footprint.rolling_radius)
+    rolled = tyre.roll(RollingMotion(math.radians(3.0), speed=20.0), loads, 120, guess=guess)
+    assert rolled.loss_power > 100
+    assert abs(rolled.balance) < 0.015
+    free = tyre.roll(RollingMotion(speed=20.0), loads, 120, rolled)
+    assert free.loss_power < rolled.loss_power
+    assert -free.force[0] * 20.0 == pytest.approx(free.loss_power + free.friction_power, rel=0.05)
 
 
 def test_a_shape_without_friction_does_not_turn() -> None:

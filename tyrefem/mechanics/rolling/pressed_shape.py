@@ -31,16 +31,20 @@ class PressedShape(Brief):
 
     Parameters
     ----------
-    footprint : the upright tyre without friction.
+    footprint : the upright tyre without friction. elastic : C of its points without loss, where the rolling tyre has
+        loss: the footprint has none; None: that of the rolling tyre.
     """
 
     footprint: Footprint
+    elastic: TreadInfluence | None = None
 
     def offsets(self, influence: TreadInfluence, harmonics: int, angles: Array, kernel: Array) -> Array:
         """(n_angles, 3, m) d of the points of the whole tread along (r, z, t), averaged with the hats, m.
 
         ``kernel``: `TreadInfluence.kernel` of these angles.
         """
+        if self.elastic is not None:
+            kernel = self.elastic.kernel(harmonics, len(angles))
         displacements = self._displacements(influence, harmonics, angles)
         forces = self._forces(influence, angles, np.pi / harmonics, displacements)
         count = len(angles)

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
 from tyrefem.errors import InputError
+from tyrefem.mechanics.footprint.compliance import TreadCompliance
 from tyrefem.mechanics.footprint.contact import LADDER
 from tyrefem.mechanics.footprint.press import Pressed
 from tyrefem.mechanics.rolling.press import press
@@ -20,7 +21,7 @@ from tyrefem.mechanics.rolling.rolled import RolledTyre
 from tyrefem.mechanics.rolling.rolling_motion import RollingMotion
 from tyrefem.mechanics.rolling.steady_rolling import FrictionLaw, RollingLoads, SteadyRolling
 from tyrefem.mechanics.rolling.tread_influence import TreadInfluence
-from tyrefem.mechanics.rolling.turning import Turning
+from tyrefem.mechanics.rolling.turning import Turning, lossy_harmonics
 from tyrefem.requirements import Requirements
 
 if TYPE_CHECKING:
@@ -207,7 +208,7 @@ def wheel_on_road(
 ) -> WheelOnRoad:
     """Inflate and press a study's tyre; defaults are values at the start of the drive's first phase.
 
-    With ``[mechanics] rolling = true`` the tyre spins: centrifugal growth, inertia and, in linear motion, loss.
+    With ``[mechanics] rolling = true`` the tyre spins: centrifugal growth, inertia and loss.
 
     ``pressing``: ``pressure``, Pa, and ``drum_diameter``, m, as in `press`.
 
@@ -223,13 +224,25 @@ def wheel_on_road(
     if load is None and deflection is None:
         load = None if phase.load is None else phase.load.start
     deflection = pressed.footprint.deflection if load is None else None
-    shape = PressedShape(pressed.footprint) if pressed.balanced else None
     law = tread_friction(pressed) if friction is None else friction
-    turning = pressed.turning
-    lossy = turning.lossy if isinstance(turning, Turning) else None
-    influence = None if lossy is None else TreadInfluence(lossy.tread)
-    rolling = SteadyRolling(pressed.pressing, camber, law, influence, shape)
+    rolling = SteadyRolling(pressed.pressing, camber, law, _lossy_points(pressed))
+    if pressed.balanced:
+        elastic = TreadInfluence(pressed.pressing.tread) if rolling.points.lossy else None
+        rolling = replace(rolling, shape=PressedShape(pressed.footprint, elastic))
     return WheelOnRoad(pressed, rolling, load, deflection, speed or pressed.speed or 1.0)
+
+
+def _lossy_points(pressed: Pressed) -> TreadInfluence | None:
+    """Points of the tread with the loss of a tyre that turns; None: it stands while it is pressed.
+
+    In large motion the loss is that of small motion about the inflated tyre under the forces of the contact.
+    """
+    turning = pressed.turning
+    if not isinstance(turning, Turning):
+        return None
+    if turning.lossy is not None:
+        return TreadInfluence(turning.lossy.tread)
+    return TreadInfluence(TreadCompliance(lossy_harmonics(pressed.study, pressed.tyre, pressed.footprint)))
 
 
 def roll(
