@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -199,6 +200,17 @@ def test_a_cornering_tyre_lasts_shorter_and_as_long_in_the_other_turn() -> None:
     assert shifts_of(left.study) == ("speed", "load", "pressure", "ambient", "slip")
     (shift,) = shifts(left, ("slip",))
     assert shift.ratio < 0.99
+
+
+def test_a_cornering_tyre_in_large_motion_closes_its_path() -> None:
+    study = tyre(**{**ROLLING, "drive__load": "1 kN"}, mechanics__motion="large", drive__slip_angle="2 deg")
+    rolling: Any = cycle_schedule(study).cycles[0][0]
+    members = np.asarray(rolling.tyre.mesh.subdomains["carcass"])
+    path = MatrixCycle(rolling).energies("carcass", members)
+    np.testing.assert_allclose(path.strain[:, STEPS], path.strain[:, -1], atol=1e-9)
+    pressed = MatrixCycle(replace(rolling, footprint=rolling.footprint.tyre.footprint)).energies("carcass", members)
+    swings = [np.ptp(each.strain[:, STEPS:], axis=1).max() for each in (path, pressed)]
+    assert 0.8 * swings[1] < swings[0] < 3 * swings[1]
 
 
 def test_the_path_of_a_rolling_tyre_closes_and_free_rolling_is_nearly_the_upright_tyre() -> None:

@@ -96,9 +96,13 @@ class MatrixCycle:
 
     def _stretch(self, elements: Indices) -> tuple[Array, Array]:
         """V (e, q, m, 3, 3) and the change of volume det V."""
-        if self.footprint.balanced is None:
+        if self.footprint.balanced is None or not self._one_sided:
             linear = np.moveaxis(self._strains.strain(self._linear_angles, elements), 0, -1)
             linear[..., 3:] /= 2
+            if self.footprint.balanced is not None:
+                values, vectors = np.linalg.eigh(np.eye(3) + 2 * tensors(linear))
+                stretches = np.sqrt(np.maximum(values, SMALLEST**2))
+                return _spectral(stretches, vectors), stretches.prod(axis=-1)
             volume = 1 + linear[..., :3].sum(axis=-1)
             values, vectors = np.linalg.eigh(np.eye(3) + tensors(linear))
             return _spectral(np.maximum(values, SMALLEST), vectors), volume

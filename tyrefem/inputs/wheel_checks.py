@@ -75,11 +75,6 @@ def _check_law(study: DrivenStudy) -> None:
     if mechanics.strain != "fem":
         message = f"the law 'rolling' needs mechanics.strain = 'fem', not '{mechanics.strain}'"
         raise InputError(message, field=field)
-    if mechanics.motion != "linear":
-        message = (
-            "the law 'rolling' needs mechanics.motion = 'linear': friction with strains in large motion is not solved"
-        )
-        raise InputError(message, field=field)
     if all(card.friction is None for card in study.materials.values()):
         message = "the law 'rolling' needs the table [friction] on the card of the rubber that meets the road"
         raise InputError(message, field="materials.tread.friction")

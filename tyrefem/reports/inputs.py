@@ -293,8 +293,8 @@ SLIDING = {
     "are left out.",
 }
 ROLLING = {
-    "Steady rolling with friction": "Each state of slip, torque, slip angle and camber is steady rolling in small "
-    "motion about the inflated tyre. Friction heat of every ring of the tread is its mean over the revolution; the "
+    "Steady rolling with friction": "Each state of slip, torque, slip angle and camber is steady rolling. "
+    "Friction heat of every ring of the tread is its mean over the revolution; the "
     "effusivities of tread and road divide it. The coefficient of friction does not follow the temperature of the "
     "run. Wear, water and tread gaps are left out.",
 }

@@ -29,11 +29,12 @@ class FootprintByElements(StrainLaw):
     def assumption_of(self, study: StudyData) -> tuple[str, str]:
         """Large motion, or the linear one with what it leaves out."""
         if study.card.boundaries.sliding.rolls:
+            large = study.card.mechanics.motion == "large"
+            state = "its footprint in large motion" if large else "the inflated tyre"
             return (
                 "A footprint with friction",
-                "The section is inflated and rolls on the road by Fourier harmonics of small motion about that state, "
-                "with stick and slip. Rotations under the footprint are not small: the tyre is too stiff and its "
-                "strains too large.",
+                f"The section is inflated and rolls with stick and slip, by Fourier harmonics. The forces of friction "
+                f"move it in small motion from {state}.",
             )
         if study.card.mechanics.rolling:
             return (

@@ -53,6 +53,11 @@ class LaggingFootprint(Footprint):
         return self.rolling
 
     @property
+    def cycle(self) -> LaggingStrains:
+        """Strains over a revolution."""
+        return LaggingStrains(self)
+
+    @property
     def rolling_radius(self) -> float:
         """Speed over W, m; the computed motion's differs by what the last guess of W left."""
         return self.travel

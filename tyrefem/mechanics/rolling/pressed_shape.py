@@ -54,6 +54,10 @@ class PressedShape(Brief):
             linear[to] = np.einsum("japbq,jbq->ap", behind, forces, optimize=True)
         return displacements - linear
 
+    def forces(self, influence: TreadInfluence, harmonics: int, angles: Array) -> Array:
+        """(n_angles, 3, m) f: forces of the road on the points of the pressed tyre along (r, z, t), N."""
+        return self._forces(influence, angles, np.pi / harmonics, self._displacements(influence, harmonics, angles))
+
     def _displacements(self, influence: TreadInfluence, harmonics: int, angles: Array) -> Array:
         """(n_angles, 3, m) displacements along (r, z, t), m."""
         nodes, sides = influence.source

@@ -14,21 +14,21 @@ from tyrefem.brief import Brief
 from tyrefem.cache import Cache
 from tyrefem.errors import InputError
 from tyrefem.materials.reads import FEM_ROLLING, values_read
-from tyrefem.mechanics.footprint.compliance import interpolation, solved_harmonics
 from tyrefem.mechanics.footprint.footprint import Footprint
 from tyrefem.mechanics.footprint.pressed_tyre import inputs
+from tyrefem.mechanics.footprint.strain_harmonics import StrainHarmonics
 from tyrefem.mechanics.rolling.friction_rings import FrictionRings, contact_angles
-from tyrefem.mechanics.rolling.lagging_strains import LaggingFootprint
-from tyrefem.mechanics.rolling.lossy_harmonics import LossyHarmonics
+from tyrefem.mechanics.rolling.lagging_strains import LaggingFootprint, LaggingStrains
 from tyrefem.mechanics.rolling.roll import TOLERANCE, RolledStudy, WheelOnRoad, friction_card, settled, wheel_on_road
 from tyrefem.mechanics.rolling.rolling_motion import RollingMotion
-from tyrefem.mechanics.rolling.tread_influence import ON_PLANE, PHASE
+from tyrefem.mechanics.rolling.section_fields import SectionFields, section_motion
 
 if TYPE_CHECKING:
     from tyrefem.inputs.loading import LoadCase
     from tyrefem.inputs.study import StudyData
     from tyrefem.mechanics.footprint.press import Pressed
     from tyrefem.mechanics.rolling.rolled import RolledTyre
+    from tyrefem.mechanics.rolling.rolling_grid import RollingGrid
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -54,21 +54,15 @@ class RollingFields(Brief):
 
     @classmethod
     def of(cls, state: RolledTyre) -> RollingFields:
-        """The fields of a rolling tyre; a half section takes the forces of its side."""
+        """The fields of a rolling tyre; beside a pressed shape, those of the forces that friction adds to it."""
         grid = state.grid
-        vectors = np.einsum("kax,ka->kx", state.axes, state.contact.forces).reshape(len(grid.angles), -1, 3)
-        forces = np.einsum("jpx,jcx->jpc", vectors, grid.wheel_axes)
-        _, sides = grid.influence.source
-        tread = grid.influence.tread
-        if tread.half:
-            shares = np.where(np.abs(grid.influence.places[1]) <= ON_PLANE, 0.5, 1.0)
-            forces = (forces * shares[:, None])[:, sides > 0]
-        n = np.arange(grid.harmonics + 1)
-        weights = np.sinc(n * grid.step / (2 * np.pi)) ** 2 / np.where(n == 0, 2 * np.pi, np.pi)
-        waves = weights[:, None] * np.exp(-1j * np.multiply.outer(n, grid.angles))
-        loads = np.einsum("nj,jpc->ncp", waves, forces) / PHASE[:, None]
+        if grid.shape is None:
+            fields = state.fields
+        else:
+            fields = SectionFields(grid, state.fields.components - np.moveaxis(_shape_forces(grid), 1, 2))
+        loads = fields.loads
         loads[0] = loads[0].real
-        return cls(tread, np.asarray(loads), state.deflection)
+        return cls(grid.influence.tread, loads, state.deflection)
 
     @property
     def harmonics(self) -> int:
@@ -78,21 +72,40 @@ class RollingFields(Brief):
     @functools.cached_property
     def amplitudes(self) -> Complex:
         """(harmonics + 1, n_dofs) complex amplitudes U, m, of u = Re((U_r, U_z, -i U_t) e^(i n t))."""
-        harmonics = self.tread.harmonics
-        dofs = 3 * self.tread.nodes + np.arange(3)[:, None]
-        loads = np.zeros((self.harmonics + 1, harmonics.elements.n_dofs), dtype=complex)
-        loads[:, dofs.ravel()] = self.loads.reshape(len(loads), -1)
-        loads[:, harmonics.held] = 0.0
-        if isinstance(harmonics, LossyHarmonics):
-            return np.asarray(self.tread.responses(loads))
-        weights, moved = interpolation(self.harmonics), np.zeros_like(loads)
-        for column, n in enumerate(solved_harmonics(self.harmonics)):
-            served = np.flatnonzero(weights[:, column])
-            if len(served):
-                columns = np.concatenate([loads[served].real, loads[served].imag]).T
-                real, imaginary = np.split(harmonics.solve(n, columns).T, 2)
-                moved[served] += weights[served, column, None] * (real + 1j * imaginary)
-        return moved
+        return section_motion(self.tread, self.loads)
+
+
+def _shape_forces(grid: RollingGrid) -> Array:
+    """(n_angles, 3, m) forces of the pressed shape along (r, z, t), turned as the shape has, N."""
+    assert grid.shape is not None
+    angles = grid.angles + grid.turn
+    return grid.shape.forces(grid.influence, grid.harmonics, angles)
+
+
+@dataclass(frozen=True, eq=False)
+class RolledStrains(LaggingStrains):
+    """Strains of a `RolledFootprint`. In large motion: Green's of the pressed tyre, turned round the wheel as its shape
+    is, and the linear strains of the forces that friction adds."""
+
+    @functools.cached_property
+    def amplitudes(self) -> Any:
+        """(harmonics + 1, 6, n_elements, n_points) complex E_n."""
+        added, footprint = super().amplitudes, self.footprint
+        if footprint.balanced is None:
+            return added
+        assert isinstance(footprint, RolledFootprint)
+        pressed = StrainHarmonics(footprint.tyre.footprint).amplitudes
+        highest = max(len(pressed), len(added))
+        turn = np.exp(1j * footprint.turn * np.arange(len(pressed)))
+        total = np.zeros((highest, *pressed.shape[1:]), dtype=complex)
+        total[: len(pressed)] += turn[:, None, None, None] * pressed
+        total[: len(added)] += added
+        return total
+
+    def waves(self, angles: Array) -> Any:
+        """(6, harmonics + 1, n_angles) complex: e^(i n t), and -i e^(i n t) for rt and zt."""
+        turn = np.exp(1j * np.multiply.outer(np.arange(len(self.amplitudes)), np.asarray(angles)))
+        return np.stack([turn] * 4 + [-1j * turn] * 2)
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,12 +118,19 @@ class RolledFootprint(LaggingFootprint):
     ----------
     rolling : `RollingFields` of the tyre. travel : m rolled per radian over the share of the speed that the drive's
         slip leaves. friction : of the rings. touched_length, touched_area : m, m2. pressed : the upright tyre.
+    turn : rad, of the pressed shape round the wheel in large motion.
     """
 
     friction: FrictionRings | None = None
     touched_length: float = 0.0
     touched_area: float = 0.0
     pressed: Pressed | None = None
+    turn: float = 0.0
+
+    @property
+    def cycle(self) -> RolledStrains:
+        """Strains over a revolution."""
+        return RolledStrains(self)
 
     @property
     def tyre(self) -> Pressed:
@@ -145,6 +165,7 @@ class RolledFootprint(LaggingFootprint):
             touched_length=float(lengths.max()),
             touched_area=float(lengths @ (influence.lengths * across / along)),
             pressed=rolled.wheel.pressed,
+            turn=state.grid.turn,
         )
 
 
@@ -208,7 +229,9 @@ def _tyre_key(study: StudyData, case: LoadCase) -> Hashable:
         key += warmth
     if study.card.mechanics.rolling:
         key += (repr(values_read(FEM_ROLLING, study.materials)), *warmth, _given(case))
-    return key
+    if study.card.mechanics.motion == "large":
+        key += (_given(case),)
+    return (study.card.mechanics.motion, *key)
 
 
 def _wheel(study: StudyData, case: LoadCase) -> WheelOnRoad:
@@ -218,14 +241,16 @@ def _wheel(study: StudyData, case: LoadCase) -> WheelOnRoad:
 
     def pressed() -> WheelOnRoad:
         road = {"pressure": case.pressure, "drum_diameter": case.drum_diameter, "speed": _speed(case)}
-        return wheel_on_road(study, motion="linear", **wanted, **road)
+        return wheel_on_road(study, motion=study.card.mechanics.motion, **wanted, **road)
 
     tyre = _TYRES.get(_tyre_key(study, case), pressed)
     if friction_card(tyre.pressed) is None:
         message = "the rubber on the road needs the table [friction] for the law of sliding 'rolling'"
         raise InputError(message, field="friction")
     assert case.wheel is not None
-    footprint = tyre.pressed.pressing.solve(**wanted, tolerance=tyre.pressed.tolerance)
+    footprint = tyre.pressed.footprint
+    if not tyre.pressed.balanced:
+        footprint = tyre.pressed.pressing.solve(**wanted, tolerance=tyre.pressed.tolerance)
     rolling = replace(tyre.rolling, camber=case.wheel.camber, influence=tyre.rolling.points)
     on_road = replace(tyre.pressed, footprint=footprint)
     return WheelOnRoad(on_road, rolling, wanted.get("load"), wanted.get("deflection"), tyre.speed)

@@ -9,13 +9,33 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
-from tyrefem.mechanics.footprint.compliance import TreadCompliance
+from tyrefem.mechanics.footprint.compliance import TreadCompliance, interpolation, solved_harmonics
 from tyrefem.mechanics.footprint.elements import COMPONENTS
+from tyrefem.mechanics.rolling.lossy_harmonics import LossyHarmonics
 from tyrefem.mechanics.rolling.rolling_grid import RollingGrid
 from tyrefem.mechanics.rolling.tread_influence import MIRROR, PHASE
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
+
+
+def section_motion(tread: TreadCompliance, waves: Complex) -> Complex:
+    """(harmonics + 1, n_dofs) amplitudes, m, under forces (harmonics + 1, 3, nodes) on the tread, N per radian."""
+    harmonics = tread.harmonics
+    loads = np.zeros((len(waves), harmonics.elements.n_dofs), dtype=complex)
+    loads[:, (COMPONENTS * tread.nodes + np.arange(COMPONENTS)[:, None]).ravel()] = waves.reshape(len(waves), -1)
+    loads[:, harmonics.held] = 0.0
+    if isinstance(harmonics, LossyHarmonics):
+        return np.asarray(tread.responses(loads))
+    highest = len(waves) - 1
+    weights, moved = interpolation(highest), np.zeros_like(loads)
+    for column, n in enumerate(solved_harmonics(highest)):
+        served = np.flatnonzero(weights[:, column])
+        if len(served):
+            both = np.concatenate([loads[served].real, loads[served].imag]).T
+            real, imaginary = np.split(harmonics.solve(n, both).T, 2)
+            moved[served] += weights[served, column, None] * (real + 1j * imaginary)
+    return moved
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,17 +61,30 @@ class SectionFields(Brief):
         return np.asarray(np.einsum("nj,jpc->ncp", waves, self.components) / PHASE[:, None])
 
     @functools.cached_property
+    def loads(self) -> Complex:
+        """(harmonics + 1, 3, nodes) of the forces at the section's nodes; of a half section, their symmetric part."""
+        influence = self.grid.influence
+        if not influence.tread.half:
+            return self._on_nodes(self.waves)
+        here, there = self._halves
+        return (here + there) / 2
+
+    @functools.cached_property
+    def _halves(self) -> tuple[Complex, Complex]:
+        """Forces on the side z > 0 of a half section, and the mirror image of those on the other."""
+        _, signs = self.grid.influence.source
+        return self._on_nodes(self.waves, signs > 0), self._on_nodes(self.waves * MIRROR[:, None], signs < 0)
+
+    @functools.cached_property
     def sides(self) -> tuple[Complex, ...]:
         """(harmonics + 1, n_dofs) amplitudes U, m, of a full section; of a half section, of the side z > 0 and of the
         mirror image of the other."""
         influence, tread = self.grid.influence, self.grid.influence.tread
         if not tread.half:
-            return (self._moved(tread, self._on_nodes(self.waves)),)
-        _, signs = influence.source
-        here = self._on_nodes(self.waves, signs > 0)
-        there = self._on_nodes(self.waves * MIRROR[:, None], signs < 0)
-        same = self._moved(tread, (here + there) / 2)
-        other = self._moved(TreadCompliance(influence.antisymmetric), (here - there) / 2)
+            return (section_motion(tread, self.loads),)
+        here, there = self._halves
+        same = section_motion(tread, self.loads)
+        other = section_motion(TreadCompliance(influence.antisymmetric), (here - there) / 2)
         return same + other, same - other
 
     def _on_nodes(self, waves: Complex, chosen: NDArray[np.bool_] | slice = slice(None)) -> Complex:
@@ -61,16 +94,6 @@ class SectionFields(Brief):
         placed = np.zeros((*waves.shape[:2], len(influence.tread.nodes)), dtype=complex)
         placed[:, :, nodes[chosen]] = waves[:, :, chosen]
         return placed
-
-    def _moved(self, tread: TreadCompliance, waves: Complex) -> Complex:
-        """(harmonics + 1, n_dofs) amplitudes under (harmonics + 1, 3, nodes) forces."""
-        harmonics = tread.harmonics
-        loads = np.zeros((len(waves), harmonics.elements.n_dofs), dtype=complex)
-        loads[:, (COMPONENTS * tread.nodes + np.arange(COMPONENTS)[:, None]).ravel()] = waves.reshape(len(waves), -1)
-        loads[:, harmonics.held] = 0.0
-        if self.grid.influence.lossy:
-            return np.asarray(tread.responses(loads))
-        return tread.responses(loads.real.copy()) + 1j * tread.responses(loads.imag.copy())
 
     def strains(self, angles: Array) -> tuple[Array, ...]:
         """(6, n_elements, n_points, n_angles) strains of each of `sides` at angles, rad; order rr, zz, tt, rz, rt, zt,

@@ -19,7 +19,7 @@ from tyrefem.mechanics.footprint.footprint import Footprint
 from tyrefem.mechanics.footprint.strain_amplitude import StrainAmplitude
 from tyrefem.mechanics.footprint.strain_harmonics import StrainHarmonics
 from tyrefem.mechanics.rolling.free_rolling import FreeRollingResistance, LossyTyre, rolling_resistance
-from tyrefem.mechanics.rolling.lagging_strains import LaggingFootprint, LaggingStrains
+from tyrefem.mechanics.rolling.lagging_strains import LaggingFootprint
 from tyrefem.mechanics.rolling.lossy_harmonics import LossyHarmonics
 
 if TYPE_CHECKING:
@@ -116,7 +116,7 @@ class Turning(Brief):
 
 def cycle_of(footprint: Footprint) -> StrainHarmonics:
     """Strains over a revolution of a footprint, with their lag if it has one."""
-    return LaggingStrains(footprint) if isinstance(footprint, LaggingFootprint) else StrainHarmonics(footprint)
+    return footprint.cycle if isinstance(footprint, LaggingFootprint) else StrainHarmonics(footprint)
 
 
 def turn(order: PressOrder, speed: float) -> Turning:
