@@ -271,7 +271,9 @@ class _Search:
             if abs(excess) <= ACCURACY * speed or (narrow and excess < 0):
                 others = [n for n, (_, last) in known.items() if n not in waves and last <= NEARLY * wave.angular_speed]
                 waves |= {n: other for n in others if (other := kind(shape, n)) is not None}
-                return shape.standing(wave, {n: other.angular_speed for n, other in waves.items()})
+                near_speeds = {n: other.angular_speed for n, other in waves.items()}
+                most = NEARLY * wave.angular_speed
+                return shape.standing(wave, {n: other for n, other in near_speeds.items() if other <= most})
             before, here = below, speed
             below, above = (below, (speed, excess)) if excess < 0 else ((speed, excess), above)
             if above is None:
