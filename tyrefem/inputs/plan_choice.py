@@ -24,6 +24,8 @@ UNITS = {
     "slip_ratio": "1",
     "slip_speed": "m/s",
     "slip_angle": "rad",
+    "torque": "N*m",
+    "camber": "rad",
 }
 Limits = dict[str, tuple[str, str]]
 
