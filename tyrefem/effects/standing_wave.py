@@ -20,8 +20,8 @@ class StandingWave(Effect):
         "Above a critical speed a standing wave behind the footprint flexes the tyre again and again."
     )
     source: ClassVar[str] = (
-        "estimate, computed by tyrefem press --critical-speed --rise: 55 m/s and gain 2.7 come nearest in the 22x5.5 at "
-        "83 psi, 41 m/s and gain 4.9 in a passenger tyre, the factor within 0.11; the onset is where the heat bends "
+        "estimate, computed by tyrefem press --critical-speed --rise: 55 m/s and gain 2.7 come nearest in the 22x5.5 "
+        "at 83 psi, 41 m/s and gain 4.9 in a passenger tyre, the factor within 0.11; the onset is where the heat bends "
         "up, not the speed of the belt's wave (84, 143 m/s); heat that rises slowly below the onset is left out"
     )
     heat_of_temperature: ClassVar[bool] = False
