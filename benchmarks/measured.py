@@ -39,8 +39,9 @@ PASSENGER, SPORTS = (
 LBF, PSI, INCH = 4.4482216152605, 6894.757293168361, 0.0254
 #: The RE-71R: tread as stated, body plies of the size's rule.
 WORN = {"section.parameters": {"tread_gauge": "4.5 mm"}}
-#: Mesh of the tables, the finer one of the numerical error, and the coarse one of moduli, sensitivities and --quick.
-MESH, FINE, COARSE = "8 mm", "5 mm", "12 mm"
+#: Mesh of the tables, the finer one of the numerical error, and the coarse one of moduli, sensitivities and --quick:
+#: elements of the mechanics have 16, 10 and 24 mm.
+MESH, FINE, COARSE = "6.4 mm", "4 mm", "9.6 mm"
 #: More harmonics, of numerical error: of large motion, of its contact, of linear motion.
 MORE = {"harmonics": 36, "contact": 180, "linear_harmonics": 144}
 #: Motions of the tables; the first is that of the pressure and of --quick.
@@ -240,8 +241,8 @@ def numerics(resume: bool) -> None:
         pressure, load = data_set.typical
         nominal = data_set.at(pressure, load)
         variants = {
-            f"mesh of {MESH}": nominal,
-            f"mesh of {FINE}": data_set.changed(pressure, load, {"mesh.size": FINE}),
+            "elements of 16 mm": nominal,
+            "elements of 10 mm": data_set.changed(pressure, load, {"mesh.size": FINE}),
             "{harmonics} harmonics, {contact} of the contact (linear: {linear_harmonics})".format(**MORE): replace(
                 nominal, **MORE
             ),
@@ -353,7 +354,7 @@ def quick() -> None:
         case = f"{data_set.tyre}, {pressure / 1e3:.0f} kPa, {load:.0f} N, {MOTIONS[0]} motion"
         print(f"{case}: mesh of {COARSE}")
         for quantity, (now, stored) in quick_row(name).items():
-            print(f"  {quantity:30s} {now:10.5g}   stored, mesh of {MESH}: {stored:10.5g}")
+            print(f"  {quantity:30s} {now:10.5g}   stored, elements of 16 mm: {stored:10.5g}")
     ratios = sorted(row["computed over catalogue"] for row in aircraft_rows())
     print(f"{len(ratios)} aircraft tyres: computed over catalogue deflection, median {ratios[len(ratios) // 2]:.3f}")
 

@@ -6,7 +6,7 @@ Values and gradients of a motion at angles of the wheel, and forces of harmonics
 from __future__ import annotations
 
 import functools
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -106,10 +106,20 @@ class WheelAngles:
     """Angles from 0 to pi for harmonics (u_r cos n t, u_z cos n t, u_t sin n t) up to ``highest``.
 
     The number of angles is 3/2 ``highest`` + 1: products of two harmonics are not aliased to lower ones.
+    ``precision``: of values, gradients and forces.
     """
 
     elements: SectionElements
     highest: int
+    precision: type = float
+
+    @functools.cached_property
+    def _single(self) -> WheelAngles:
+        return replace(self, precision=np.float32)
+
+    def within(self, precision: type | np.dtype[Any]) -> WheelAngles:
+        """These angles in double or single precision."""
+        return self if np.dtype(precision) == np.dtype(self.precision) else self._single
 
     @functools.cached_property
     def angles(self) -> Array:
@@ -122,7 +132,8 @@ class WheelAngles:
         n = np.arange(self.highest + 1)
         phase = np.multiply.outer(self.angles, n)
         cos, sin = np.cos(phase), np.sin(phase)
-        return np.stack([cos, cos, sin]), np.stack([-n * sin, -n * sin, n * cos])
+        value, slope = np.stack([cos, cos, sin]), np.stack([-n * sin, -n * sin, n * cos])
+        return value.astype(self.precision), slope.astype(self.precision)
 
     @functools.cached_property
     def shares(self) -> Array:
@@ -131,7 +142,7 @@ class WheelAngles:
         weights[[0, -1]] /= 2
         shares = np.tile(2 * weights[:, None], (1, self.highest + 1))
         shares[:, 0] /= 2
-        return shares
+        return shares.astype(self.precision)
 
     @functools.cached_property
     def to_amplitudes(self) -> tuple[Array, Array]:
@@ -141,13 +152,13 @@ class WheelAngles:
 
     def at_nodes(self, amplitudes: Array) -> tuple[Array, Array]:
         """(3, n_nodes, m) displacement and its derivative by the angle, of amplitudes (highest + 1, n_dofs)."""
-        u = np.asarray(amplitudes).reshape(self.highest + 1, -1, COMPONENTS).transpose(2, 1, 0)
+        u = np.asarray(amplitudes, self.precision).reshape(self.highest + 1, -1, COMPONENTS).transpose(2, 1, 0)
         value, slope = (np.ascontiguousarray(u) @ waves.transpose(0, 2, 1) for waves in self.waves)
         return value, slope
 
     def values(self, amplitudes: Array) -> Array:
         """(3, n_nodes, m) displacement of amplitudes (highest + 1, n_dofs)."""
-        u = np.asarray(amplitudes).reshape(self.highest + 1, -1, COMPONENTS).transpose(2, 1, 0)
+        u = np.asarray(amplitudes, self.precision).reshape(self.highest + 1, -1, COMPONENTS).transpose(2, 1, 0)
         return np.asarray(np.ascontiguousarray(u) @ self.waves[0].transpose(0, 2, 1))
 
     def from_nodes(self, value: Array, slope: Array | None = None) -> Array:
@@ -161,7 +172,8 @@ class WheelAngles:
     def _derivatives(self) -> tuple[Array, Array]:
         """Shape functions differentiated by r and z (e, 2 q, 9); divided by r (e, q, 9)."""
         over_r = self.elements.values / self.elements.radii[..., None]
-        return np.concatenate(list(self.elements.gradients), axis=1), over_r
+        by = np.concatenate(list(self.elements.gradients), axis=1)
+        return by.astype(self.precision), over_r.astype(self.precision)
 
     @functools.cached_property
     def _sums(self) -> Any:
@@ -170,7 +182,8 @@ class WheelAngles:
 
         nodes = self.elements.element_nodes.ravel()
         place = (nodes, np.arange(len(nodes)))
-        return sp.csr_matrix((np.ones(len(nodes)), place), shape=(self.elements.n_nodes, len(nodes)))
+        ones = np.ones(len(nodes), self.precision)
+        return sp.csr_matrix((ones, place), shape=(self.elements.n_nodes, len(nodes)))
 
     def mean_at_nodes(self, values: Array) -> Array:
         """(n_nodes, k) mean over the elements at each node of values (e, k)."""
@@ -188,7 +201,7 @@ class WheelAngles:
         slope[0] -= value[2]
         slope[2] += value[0]
         e, m, q = len(nodes), len(self.angles), over_r.shape[1]
-        gradient = np.empty((e, COMPONENTS, COMPONENTS * q, m))
+        gradient = np.empty((e, COMPONENTS, COMPONENTS * q, m), self.precision)
         for k in range(COMPONENTS):
             np.matmul(by, value[k][nodes], out=gradient[:, k, : 2 * q])
             np.matmul(over_r, slope[k][nodes], out=gradient[:, k, 2 * q :])
@@ -198,7 +211,7 @@ class WheelAngles:
         """(highest + 1, n_dofs) forces, N per radian, of a stress (e, 9, q, m) times r dA; adjoint to `gradient`."""
         e, _, q, m = stress.shape
         p, (by, over_r) = stress.reshape(e, COMPONENTS, COMPONENTS * q, m), self._derivatives
-        value, slope = np.empty((2, COMPONENTS, self.elements.n_nodes, m))
+        value, slope = np.empty((2, COMPONENTS, self.elements.n_nodes, m), self.precision)
         by, over_r = by.transpose(0, 2, 1), over_r.transpose(0, 2, 1)
         for k in range(COMPONENTS):
             value[k] = self._sums @ (by @ p[:, k, : 2 * q]).reshape(9 * e, m)

@@ -28,13 +28,13 @@ class Tangent:
 
     def product(self, change: Array) -> Array:
         """(highest + 1, n_dofs) change of the forces due to a change (highest + 1, n_dofs) of the motion."""
-        round_wheel = self.outside.round
+        round_wheel = self.outside.round.within(self.response.tangent.dtype)
         forces = round_wheel.forces(self.response.product(round_wheel.gradient(change)))
         return forces + self.outside.support_forces(change) + self.outside.wall_forces(change, self.wall)
 
     def energies(self, change: Array) -> Array:
         """(e, m) energy of a change (highest + 1, n_dofs) in every element at every angle, twice, J per radian."""
-        gradient = self.outside.round.gradient(change)
+        gradient = self.outside.round.within(self.response.tangent.dtype).gradient(change)
         return np.asarray((gradient * self.response.product(gradient)).sum(axis=(1, 2)))
 
     def convex(self, flagged: Flags) -> Tangent:
@@ -80,7 +80,8 @@ class NonlinearForces:
 
         ``precision`` : of the derivative, ``numpy.float32`` for a search that need not be exact.
         """
-        forces, response, wall = self._total(amplitudes, precision)
+        forces, response, (along, around) = self._total(amplitudes, precision)
+        wall = along.astype(precision), around.astype(precision)
         return Tangent(self, forces - self._inflated_forces, response, wall)
 
     def forces(self, amplitudes: Array) -> Array:
@@ -111,8 +112,8 @@ class NonlinearForces:
         return np.zeros(()) if support is None else np.asarray((support @ np.asarray(change).T).T)
 
     def wall_forces(self, change: Array, wall: tuple[Array, Array]) -> Array:
-        """Change of the pressure's forces: p (u_s x x_t + x_s x u_t)."""
-        along, around = self._vectors(change)
+        """Change of the pressure's forces: p (u_s x x_t + x_s x u_t), in the precision of x_s and x_t."""
+        along, around = self._vectors(change, wall[0].dtype)
         return self._wall_loads(_cross(along, wall[1]) + _cross(wall[0], around))
 
     @functools.cached_property
@@ -130,14 +131,15 @@ class NonlinearForces:
         sums = sp.csr_matrix((np.ones(nodes.size), place), shape=(elements.n_nodes, nodes.size))
         return nodes, values, along, normals, radii, weights, sums
 
-    def _vectors(self, amplitudes: Array) -> tuple[Array, Array]:
+    def _vectors(self, amplitudes: Array, precision: type | np.dtype[Any] = float) -> tuple[Array, Array]:
         """(f, q, m, 3) u_s along the wall, and u_t round the wheel."""
         if not self.harmonics.state.pressure:
             return np.zeros((0, 0, 0, 3)), np.zeros((0, 0, 0, 3))
         nodes, values, along, *_ = self._wall
+        values, along = values.astype(precision), along.astype(precision)
         used, inverse = np.unique(nodes, return_inverse=True)
         cut = np.asarray(amplitudes).reshape(self.highest + 1, -1, COMPONENTS)[:, used]
-        value, slope = (np.moveaxis(part, 0, -1) for part in self.round.at_nodes(cut))
+        value, slope = (np.moveaxis(part, 0, -1) for part in self.round.within(precision).at_nodes(cut))
         inverse = inverse.reshape(nodes.shape)
         shape = (*values.shape[:2], -1, 3)
         flat = value[inverse].reshape(len(nodes), 9, -1)
@@ -153,10 +155,10 @@ class NonlinearForces:
             return np.zeros(())
         _, values, _, _, _, weights, sums = self._wall
         f, q, m, _ = vectors.shape
-        weighted = (self.harmonics.state.pressure * weights)[..., None, None] * vectors
-        local = values.transpose(0, 2, 1) @ weighted.reshape(f, q, -1)
-        value = (sums @ local.reshape(9 * f, -1)).reshape(-1, m, 3)
-        return self.round.from_nodes(np.ascontiguousarray(np.moveaxis(value, -1, 0)))
+        weighted = (self.harmonics.state.pressure * weights)[..., None, None].astype(vectors.dtype) * vectors
+        local = values.transpose(0, 2, 1).astype(vectors.dtype) @ weighted.reshape(f, q, -1)
+        value = (sums.astype(vectors.dtype) @ local.reshape(9 * f, -1)).reshape(-1, m, 3)
+        return self.round.within(vectors.dtype).from_nodes(np.ascontiguousarray(np.moveaxis(value, -1, 0)))
 
     def second_strains(self, amplitudes: Array) -> Array:
         """(highest + 1, 6, e, q) amplitudes of H'H/2, the nonlinear part of Green's strain; shears doubled."""

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 #: Allowed change with the number of harmonics.
 TOLERANCE = 0.02
 #: Size of nine-node elements over that of the study's mesh.
-COARSER = 2.0
+COARSER = 2.5
 #: Numbers of pressures with roads, and of loads, that a tyre keeps: a ramp has nine. About 40 MB each.
 REMEMBERED = 10
 #: Number of tyres that a process keeps: the study's tyre, and the last one with another stiffness.
@@ -37,7 +37,7 @@ TYRES = 2
 def mechanical_mesh(study: StudyData, *, large: bool | None = None) -> TyreMesh:
     """The study's mesh file; gmsh's quadrilaterals if the study has these; otherwise a mapped mesh.
 
-    The mapped mesh has nine-node elements twice as large as the study's, also if the study has gmsh's triangles
+    The mapped mesh has nine-node elements `COARSER` times as large as the study's, also if the study has gmsh's triangles
     (nine-node elements need quadrilaterals; energies are interpolated by region and place). ``large``: for large
     motion; None: as in the study.
 

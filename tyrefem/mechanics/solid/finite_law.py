@@ -35,7 +35,7 @@ class StressResponse:
     Parameters
     ----------
     stress : (e, 9, q, m) P, N m per radian; components 3 k + i with direction k of the force and i of the gradient.
-    tangent : (e, 9, 9, q m) A. volume : (e, 9, q, m) V. Empty if only the stress is computed.
+    tangent : (e, 9, 9, q m) A. volume : (e, 9, q, m) V, as precise as A. Empty if only the stress is computed.
     functions : (e, q, 3) 1, xi, eta. bulk : (e, 3, 3) bulk stiffness between them.
     """
 
@@ -47,11 +47,14 @@ class StressResponse:
 
     def product(self, change: Array) -> Array:
         """(e, 9, q, m) change of the stress due to a change (e, 9, q, m) of the gradient."""
-        short = change.reshape(len(change), 9, -1).astype(self.tangent.dtype, copy=False)
-        product = np.einsum("eijp,ejp->eip", self.tangent, short).reshape(change.shape)
+        precision = self.tangent.dtype
+        change = change.astype(precision, copy=False)
+        functions, bulk = self.functions.astype(precision), self.bulk.astype(precision)
+        product = np.einsum("eijp,ejp->eip", self.tangent, change.reshape(len(change), 9, -1)).reshape(change.shape)
         dilatation = np.einsum("ecqm,ecqm->eqm", self.volume, change)
-        moments = self.bulk @ (self.functions.transpose(0, 2, 1) @ dilatation)
-        return np.asarray(product + self.volume * (self.functions @ moments)[:, None])
+        moments = bulk @ (functions.transpose(0, 2, 1) @ dilatation)
+        product += self.volume * (functions @ moments)[:, None]
+        return np.asarray(product)
 
     def convex(self, flagged: Flags) -> StressResponse:
         """The response with |A| instead of A in some elements at some angles, flags (e, m): its eigenvalues become
@@ -156,7 +159,7 @@ class GreenLaw:
         volume = (f * weights).reshape(9, *points).transpose(1, 0, 2, 3)
         matrix = _tangent(strains, c, s).transpose(0, 3, 4, 1, 2)
         matrix = np.ascontiguousarray(matrix, dtype=tangent).reshape(len(gradient), 9, 9, -1)
-        return StressResponse(stress, matrix, np.ascontiguousarray(volume), functions, self._bulk)
+        return StressResponse(stress, matrix, np.ascontiguousarray(volume, dtype=tangent), functions, self._bulk)
 
 
 @dataclass(frozen=True, eq=False)
@@ -197,7 +200,7 @@ class BodyLaw:
         e, _, q, m = gradient.shape
         stress = np.empty(gradient.shape)
         tangents = np.empty((e, 9, 9, q * m), dtype=tangent) if tangent else np.empty(0)
-        volume = np.empty(gradient.shape if tangent else 0)
+        volume = np.empty(gradient.shape if tangent else 0, dtype=tangent)
         count = max(1, TOGETHER // (q * m))
         for name, part in self.parts.items():
             members = np.asarray(self.members[name])
