@@ -191,7 +191,7 @@ class WheelAngles:
 
         nodes = self.elements.element_nodes
         place = (nodes.ravel(), np.repeat(np.arange(len(nodes)), nodes.shape[1]))
-        belongs = sp.csr_matrix((np.ones(nodes.size), place), shape=(self.elements.n_nodes, len(nodes)))
+        belongs = sp.csr_matrix((np.ones(nodes.size, self.precision), place), shape=(self.elements.n_nodes, len(nodes)))
         return np.asarray((belongs @ values) / belongs.sum(axis=1))
 
     def gradient(self, amplitudes: Array) -> Array:

@@ -175,7 +175,7 @@ class LargeMotion:
                 replace(start, motion=u, forces=forces, deflection=deflection)
             )
             distance = gaps - touching.tail @ forces
-            rotations = Rotations.of(outside.round, u, self.factors.harmonics.held)
+            rotations = self._rotations(outside, u)
             enough = (ENERGY * tolerance) ** 2 * self.factors.work(tangent.forces, u)
             if closed is None:
                 closed = touching.closed(gaps, forces, forces > 0)
@@ -240,10 +240,14 @@ class LargeMotion:
                 )
         return None
 
+    def _rotations(self, outside: NonlinearForces, motion: Array) -> Rotations:
+        """Rotations of a motion, in single precision: they only lead a search."""
+        return Rotations.of(outside.round.within(np.float32), motion, self.factors.harmonics.held)
+
     @staticmethod
     def _gradient_change(outside: NonlinearForces, motion: Array) -> float:
         """Largest change of a displacement gradient by a motion."""
-        return float(np.abs(outside.round.gradient(motion)).max())
+        return float(np.abs(outside.round.within(np.float32).gradient(motion)).max())
 
     def _road(self, moment: DeflectedState) -> tuple[Array, Array, Touching, Array]:
         """Gaps, m, their decrease per metre of deflection, the points of possible contact, and the tread's displacement
@@ -297,7 +301,7 @@ class LargeMotion:
         _, normal_components, touching, _ = self._road(moment)
         outside = self.nonlinear(moment.harmonics)
         tangent = outside.at(moment.motion, np.float32)
-        rotations = Rotations.of(outside.round, moment.motion, self.factors.harmonics.held)
+        rotations = self._rotations(outside, moment.motion)
         start = None
         if moment.rate is not None:
             motion, forces, _ = moment.rate

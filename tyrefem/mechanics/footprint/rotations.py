@@ -22,7 +22,7 @@ def rotation(deformation: Array) -> Array:
     >>> turned.round(6).tolist()
     [[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]
     """
-    turned = np.array(deformation, dtype=float)
+    turned = np.array(deformation)
     for _ in range(POLAR):
         cofactor = np.empty_like(turned)
         for i in range(3):
@@ -37,7 +37,7 @@ def rotation(deformation: Array) -> Array:
 class Rotations:
     """Mean rotation R(t) of the elements at every node and angle; fields of harmonics turned by it.
 
-    In single precision: they lead a search. Turning cuts harmonics above the highest. `backward` is the transpose of `forward` in the work of forces on motions.
+    Turning cuts harmonics above the highest. `backward` is the transpose of `forward` in the work of forces on motions.
 
     Parameters
     ----------
@@ -59,7 +59,7 @@ class Rotations:
         on_plane = np.setdiff1d(held[held % COMPONENTS == 1], held[held % COMPONENTS == 0] + 1) // COMPONENTS
         f[1, :, on_plane] = f[:, 1, on_plane] = 0.0
         f[1, 1, on_plane] = 1.0
-        return cls(round_wheel.within(np.float32), rotation(f).astype(np.float32), held)
+        return cls(round_wheel, rotation(f), held)
 
     def forward(self, motion: Array) -> Array:
         """R u (highest + 1, n_dofs)."""
