@@ -152,13 +152,13 @@ class WheelAngles:
 
     def at_nodes(self, amplitudes: Array) -> tuple[Array, Array]:
         """(3, n_nodes, m) displacement and its derivative by the angle, of amplitudes (highest + 1, n_dofs)."""
-        u = np.asarray(amplitudes, self.precision).reshape(self.highest + 1, -1, COMPONENTS).transpose(2, 1, 0)
+        u: Array = np.asarray(amplitudes, self.precision).reshape(self.highest + 1, -1, COMPONENTS).transpose(2, 1, 0)
         value, slope = (np.ascontiguousarray(u) @ waves.transpose(0, 2, 1) for waves in self.waves)
         return value, slope
 
     def values(self, amplitudes: Array) -> Array:
         """(3, n_nodes, m) displacement of amplitudes (highest + 1, n_dofs)."""
-        u = np.asarray(amplitudes, self.precision).reshape(self.highest + 1, -1, COMPONENTS).transpose(2, 1, 0)
+        u: Array = np.asarray(amplitudes, self.precision).reshape(self.highest + 1, -1, COMPONENTS).transpose(2, 1, 0)
         return np.asarray(np.ascontiguousarray(u) @ self.waves[0].transpose(0, 2, 1))
 
     def from_nodes(self, value: Array, slope: Array | None = None) -> Array:
@@ -182,7 +182,7 @@ class WheelAngles:
 
         nodes = self.elements.element_nodes.ravel()
         place = (nodes, np.arange(len(nodes)))
-        ones = np.ones(len(nodes), self.precision)
+        ones: Array = np.ones(len(nodes), self.precision)
         return sp.csr_matrix((ones, place), shape=(self.elements.n_nodes, len(nodes)))
 
     def mean_at_nodes(self, values: Array) -> Array:
@@ -211,7 +211,8 @@ class WheelAngles:
         """(highest + 1, n_dofs) forces, N per radian, of a stress (e, 9, q, m) times r dA; adjoint to `gradient`."""
         e, _, q, m = stress.shape
         p, (by, over_r) = stress.reshape(e, COMPONENTS, COMPONENTS * q, m), self._derivatives
-        value, slope = np.empty((2, COMPONENTS, self.elements.n_nodes, m), self.precision)
+        value: Array = np.empty((COMPONENTS, self.elements.n_nodes, m), self.precision)
+        slope = np.empty_like(value)
         by, over_r = by.transpose(0, 2, 1), over_r.transpose(0, 2, 1)
         for k in range(COMPONENTS):
             value[k] = self._sums @ (by @ p[:, k, : 2 * q]).reshape(9 * e, m)

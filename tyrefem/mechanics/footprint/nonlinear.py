@@ -81,7 +81,7 @@ class NonlinearForces:
         ``precision`` : of the derivative, ``numpy.float32`` for a search that need not be exact.
         """
         forces, response, (along, around) = self._total(amplitudes, precision)
-        wall = along.astype(precision), around.astype(precision)
+        wall: tuple[Array, Array] = along.astype(precision), around.astype(precision)
         return Tangent(self, forces - self._inflated_forces, response, wall)
 
     def forces(self, amplitudes: Array) -> Array:

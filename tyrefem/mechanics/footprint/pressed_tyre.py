@@ -37,9 +37,9 @@ TYRES = 2
 def mechanical_mesh(study: StudyData, *, large: bool | None = None) -> TyreMesh:
     """The study's mesh file; gmsh's quadrilaterals if the study has these; otherwise a mapped mesh.
 
-    The mapped mesh has nine-node elements `COARSER` times as large as the study's, also if the study has gmsh's triangles
-    (nine-node elements need quadrilaterals; energies are interpolated by region and place). ``large``: for large
-    motion; None: as in the study.
+    The mapped mesh has nine-node elements `COARSER` times as large as the study's, also if the study has gmsh's
+    triangles (nine-node elements need quadrilaterals; energies are interpolated by region and place). ``large``: for
+    large motion; None: as in the study.
 
     Raises
     ------
