@@ -73,7 +73,7 @@ RAMP = {"from": "1 kN", "to": "4825 N"}
             r'; mechanics.motion = "linear" is the quick look: \d+ s',
         ),
         (
-            lambda _: press(tyrefem.study(NASA, {"mesh.size": "0.4 mm"}), motion="large"),
+            lambda _: press(tyrefem.study(NASA, {"mesh.size": "0.38 mm"}), motion="large"),
             r'footprint of .* minutes; mechanics.motion = "linear" is the quick look',
         ),
         (
