@@ -249,3 +249,12 @@ def test_a_flux_has_a_station_and_a_width_or_is_the_same_on_the_whole_surface(pa
     (whole,) = tf.study("example-validation").replace({"effects": [entry | {"surface": "tread"}]}).effects
     assert whole.choice == {"surface": "tread"}
     assert whole.surfaces == ("road",)
+
+
+def test_a_standing_wave_is_not_counted_beside_the_inertia_of_the_rolling_tyre() -> None:
+    mechanics = {"mechanics.strain": "fem", "mechanics.motion": "linear", "mechanics.rolling": True}
+    wave = catalogue()["standing-wave"]
+    assert wave.refusal(tf.study("nasa-22x5.5-8pr")) is None
+    assert "mechanics.rolling" in str(wave.refusal(tf.study("nasa-22x5.5-8pr", mechanics)))
+    with pytest.raises(InputError, match=r"inertia already: mechanics\.rolling"):
+        tf.study("nasa-22x5.5-8pr", {**mechanics, "effects": [{"name": "standing-wave", "gain": 2.0}]})

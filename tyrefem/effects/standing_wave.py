@@ -8,7 +8,7 @@ import numpy as np
 
 from tyrefem.effects.effect import Array, Effect, Factor, Prior
 from tyrefem.effects.signature import Signature
-from tyrefem.effects.tyre import Tyre
+from tyrefem.effects.tyre import StudyOfTyre, Tyre
 
 
 class StandingWave(Effect):
@@ -45,3 +45,10 @@ class StandingWave(Effect):
             return 1.0
         u = (tyre.speed(t) / self.critical_speed - 1) / self.ONSET
         return 1 + self.gain * self.ONSET * float(np.logaddexp(0.0, u))
+
+    @classmethod
+    def refusal(cls, study: StudyOfTyre) -> str | None:
+        """Strain cycles of the rolling tyre rise towards the critical speed themselves."""
+        if study.card.mechanics.rolling:
+            return "the strain cycles have the rolling tyre's inertia already: mechanics.rolling"
+        return None

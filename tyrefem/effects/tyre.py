@@ -220,6 +220,10 @@ class MechanicsOfStudy(Protocol):
     def feedback(self) -> FeedbackOfStudy | None:
         """Settings of the feedback of temperature; None: no feedback."""
 
+    @property
+    def rolling(self) -> bool:
+        """Whether the strain cycles have the inertia of the rolling tyre."""
+
 
 class LoadLaw(Protocol):
     """A load-deflection law."""
