@@ -41,7 +41,7 @@ LBF, PSI, INCH = 4.4482216152605, 6894.757293168361, 0.0254
 WORN = {"section.parameters": {"tread_gauge": "4.5 mm"}}
 #: Mesh of the tables, the finer one of the numerical error, and the coarse one of moduli, sensitivities and --quick:
 #: elements of the mechanics have 16, 10 and 24 mm.
-MESH, FINE, COARSE = "6.4 mm", "4 mm", "9.6 mm"
+MESH, FINE, COARSE = "8 mm", "4 mm", "12 mm"
 #: More harmonics, of numerical error: of large motion, of its contact, of linear motion.
 MORE = {"harmonics": 36, "contact": 180, "linear_harmonics": 144}
 #: Motions of the tables; the first is that of the pressure and of --quick.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tyrefem as tf
 
-COARSE = {"mesh.size": "11.2 mm", "mesh.element": "P1", "drive.duration": "60 s", "drive.load": "1000 lbf"}
+COARSE = {"mesh.size": "14 mm", "mesh.element": "P1", "drive.duration": "60 s", "drive.load": "1000 lbf"}
 
 
 def bias(**changes: object) -> tf.Study:

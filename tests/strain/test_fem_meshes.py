@@ -17,7 +17,7 @@ pytestmark = pytest.mark.usefixtures("needs_gmsh")
 
 def test_gmshs_quadrilaterals_inflate_as_the_mapped_mesh() -> None:
     gmsh = tf.study(STUDY, {"mesh.size": "20 mm", "mesh.mesher": "gmsh", "mesh.cell": "quad"})
-    mapped = tf.study(STUDY, {"mesh.size": "4.8 mm"})
+    mapped = tf.study(STUDY, {"mesh.size": "6 mm"})
     meshes = [mechanical_mesh(item) for item in (gmsh, mapped)]
     assert [mesh.mesher for mesh in meshes] == ["gmsh", "mapped"]
     first, second = (inflate(item, 3e5, mesh) for item, mesh in zip((gmsh, mapped), meshes, strict=True))

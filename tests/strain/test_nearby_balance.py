@@ -35,7 +35,7 @@ def test_too_far_a_start_or_another_mesh_is_none(bias_cycle: FiniteElements) -> 
     assert bias_cycle.footprint is not None
     balance = Balance(bias_cycle.footprint.pressing)
     assert nearby_balance(balance, bias_cycle.footprint, load=2.5 * bias_cycle.case.load) is None
-    other = bias(**{"mesh.size": "14.4 mm"})
+    other = bias(**{"mesh.size": "18 mm"})
     finer = PressedTyre(other).footprint(bias_cycle.case, large=True, near=bias_cycle.footprint)
     assert finer is not None
     assert finer.motion == "large"

@@ -16,7 +16,7 @@ from tyrefem.inputs.motion import motion_in
 from tyrefem.inputs.wheel_state import wheel_state
 from tyrefem.mechanics.cycle_schedule import changes_cycle, ramp_knots
 from tyrefem.mechanics.footprint.footprint import QUICK_LOOK
-from tyrefem.mechanics.footprint.pressed_tyre import COARSER
+from tyrefem.mechanics.footprint.pressed_tyre import element_size
 from tyrefem.mechanics.strain_laws import strain_law
 
 if TYPE_CHECKING:
@@ -76,7 +76,9 @@ class RunEstimate:
                 loads.add((phase.pressure.at(fraction), carried.at(fraction), phase.drum_diameter, speed, wheel))
         feedback = card.mechanics.feedback
         again = 1 if feedback is None else self._runs * feedback.knots
-        nodes = QUADRATIC * expected_nodes(self.study.section, COARSER * self.mesh.size, through=1)
+        nodes = QUADRATIC * expected_nodes(
+            self.study.section, element_size(self.study.section, self.mesh.size), through=1
+        )
         rolled = len({case for case in loads if case[-1] is not None})
         return estimate.mechanics(
             nodes, len(pressures) * again, len(loads) * again, large=card.mechanics.motion == "large"

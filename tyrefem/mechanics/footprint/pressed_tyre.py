@@ -18,6 +18,7 @@ from tyrefem.materials.reads import values_read
 
 if TYPE_CHECKING:
     from tyrefem.geometry.meshing.mesh import TyreMesh
+    from tyrefem.geometry.section import Section
     from tyrefem.inputs.loading import LoadCase
     from tyrefem.inputs.study import StudyData
     from tyrefem.mechanics.footprint.contact import Pressing
@@ -26,20 +27,28 @@ if TYPE_CHECKING:
 
 #: Allowed change with the number of harmonics.
 TOLERANCE = 0.02
-#: Size of nine-node elements over that of the study's mesh.
-COARSER = 2.5
+#: Size of nine-node elements over that of the study's mesh: the larger one up to this share of the meridian.
+COARSER, COARSE_SHARE, AT_LEAST = 2.5, 1 / 18, 2.0
 #: Numbers of pressures with roads, and of loads, that a tyre keeps: a ramp has nine. About 40 MB each.
 REMEMBERED = 10
 #: Number of tyres that a process keeps: the study's tyre, and the last one with another stiffness.
 TYRES = 2
 
 
+def element_size(section: Section, size: float) -> float:
+    """Size of nine-node elements, m, for a study's mesh of a size, m: 2.5 times, at least twice that.
+
+    Between, they have 1/18 of the meridian. Shipped studies have 2.5 times, except the measured tyres' coarse meshes.
+    """
+    return max(AT_LEAST * size, min(COARSER * size, COARSE_SHARE * section.line.length))
+
+
 def mechanical_mesh(study: StudyData, *, large: bool | None = None) -> TyreMesh:
     """The study's mesh file; gmsh's quadrilaterals if the study has these; otherwise a mapped mesh.
 
-    The mapped mesh has nine-node elements `COARSER` times as large as the study's, also if the study has gmsh's
-    triangles (nine-node elements need quadrilaterals; energies are interpolated by region and place). ``large``: for
-    large motion; None: as in the study.
+    The mapped mesh has nine-node elements of `element_size`, also if the study has gmsh's triangles (nine-node elements
+    need quadrilaterals; energies are interpolated by region and place). ``large``: for large motion; None: as in the
+    study.
 
     Raises
     ------
@@ -49,7 +58,7 @@ def mechanical_mesh(study: StudyData, *, large: bool | None = None) -> TyreMesh:
     if choice.file is not None:
         return study.mesh()
     as_given = choice.mesher == "gmsh" and choice.cell == "quad"
-    mesher, size = ("gmsh", choice.size) if as_given else ("mapped", COARSER * choice.size)
+    mesher, size = ("gmsh", choice.size) if as_given else ("mapped", element_size(study.section, choice.size))
     mechanics = study.card.mechanics
     in_large = mechanics.strain == "fem" and mechanics.motion == "large" if large is None else large
     _check_memory(study, mesher, size, in_large)
@@ -58,7 +67,7 @@ def mechanical_mesh(study: StudyData, *, large: bool | None = None) -> TyreMesh:
     except InputError as error:
         if as_given:
             raise error.within(field="mesh", file=study.file) from None
-        message = f"the mesh of the mechanics, {COARSER:g} times as coarse: {error.message}"
+        message = f"the mesh of the mechanics, {size / choice.size:.3g} times as coarse: {error.message}"
         raise InputError(message, field=f"mesh.{error.field}", file=study.file) from None
 
 
