@@ -18,6 +18,7 @@ from tyrefem.mechanics.footprint.harmonic_balance import Balance
 from tyrefem.mechanics.footprint.harmonics import Harmonics
 from tyrefem.mechanics.footprint.large_motion import DeflectedState, LargeMotion
 from tyrefem.mechanics.footprint.nonlinear import NonlinearForces
+from tyrefem.mechanics.footprint.pressed_tyre import element_size
 from tyrefem.mechanics.footprint.rotations import Rotations
 from tyrefem.mechanics.footprint.strain_harmonics import StrainHarmonics
 from tyrefem.mechanics.footprint.taut_tyre import TautTyre, tautened
@@ -180,3 +181,12 @@ def test_a_deflection_whose_last_bit_is_rounded_is_reached(tyre: Pressing) -> No
     reached = balance._load_steps(0.01, None, 6)
     assert reached.deflection == pytest.approx(0.01, rel=1e-12)
     assert len(balance.path) == 2
+
+
+def test_nine_node_elements_are_larger_than_the_mesh_but_not_where_it_is_coarse() -> None:
+    """2.5 times, then 1/18 of the meridian, then twice; never smaller for a coarser mesh."""
+    section = study("nasa-22x5.5-8pr").section
+    limit = section.line.length / 18
+    sizes = [element_size(section, share * limit) for share in (0.1, 0.4, 0.45, 0.5, 1.0)]
+    assert [size / limit for size in sizes] == pytest.approx([0.25, 1.0, 1.0, 1.0, 2.0])
+    assert sizes == sorted(sizes)
