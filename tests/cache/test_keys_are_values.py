@@ -12,6 +12,7 @@ from tyrefem.conduction.operators import operators_of
 from tyrefem.geometry.wall import wall_of
 from tyrefem.mechanics import arcs
 from tyrefem.mechanics.cycle_schedule import cycle_schedule
+from tyrefem.simulation import surroundings
 from tyrefem.simulation.surroundings import Surroundings
 
 QUICK = {"mesh.size": "12 mm", "drive.duration": "30 s"}
@@ -40,11 +41,11 @@ def test_equal_points_are_located_once(study: tf.Study) -> None:
 
 def test_places_that_are_remembered_are_few(study: tf.Study) -> None:
     around = Surroundings(study)
-    for s in np.linspace(0.0, 0.05, 100):
+    for s in np.linspace(0.0, 0.05, surroundings._PLACES.size + 10):
         points = study.section.place(np.array([s]), 0.004).T
         around.places(points)
         arcs.places(study.section, True, points)
-    assert len(around._places) == around._places.size
+    assert len(surroundings._PLACES) == surroundings._PLACES.size
     assert len(arcs._PLACES) == arcs._PLACES.size
 
 
