@@ -4,14 +4,14 @@ One reading is a number that no other reading is. A module is on the walk where 
 of the file with it, an array, table or object that has it, or what is made of the readings: the classes of `MADE_OF`.
 A search fits again and again; what counts is that everything is handed on forwards: to a module that stands later on
 the walk, never back. `tyrefem.diagnose.workflow` calls the others in turn and makes the diagnosis of what they give,
-so that it stands behind them.
+so that it stands behind them. The room `tyrefem.api` counts as a whole: its modules only call, and change the class.
 """
 
 from __future__ import annotations
 
 import tempfile
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from graphlib import TopologicalSorter
 from pathlib import Path
 from typing import Any
@@ -37,6 +37,8 @@ MADE_OF = (
     "DiagnosisData",
     "Diagnosis",
 )
+#: The room of methods, on the walk as a whole.
+METHODS = "tyrefem.api"
 #: Longer lists are not looked into: no list of objects that hold readings is as long.
 LONG = 200
 
@@ -73,6 +75,11 @@ class ThermocoupleWalk:
     def form(self, module: str) -> str:
         """What a module hands on to another one at last."""
         return last_form(self.steps, module)
+
+
+def whole(module: str) -> str:
+    """A module as it counts on the walk."""
+    return METHODS if module.startswith(f"{METHODS}.") else module
 
 
 def holds_reading(value: Any) -> bool:
@@ -121,4 +128,5 @@ def thermocouple_walk() -> ThermocoupleWalk:
         pd.DataFrame({"time [s]": times, **columns}).to_csv(file, index=False)
         with Follower(holds_reading) as follower:
             study.diagnose(file, largest=1, looks=1)
-    return ThermocoupleWalk(tuple(follower.steps))
+    steps = (replace(step, module=whole(step.module), taker=whole(step.taker)) for step in follower.steps)
+    return ThermocoupleWalk(tuple(steps))

@@ -101,7 +101,7 @@ def test_what_is_said_to_fit_fits(free: Callable[[float], None], monkeypatch: py
     (size,) = re.findall(r"([\d.]+) mm or more would fit", str(error))
     begun: list[Any] = []
     monkeypatch.setattr("tyrefem.simulation.run.simulate", lambda tyre, *_given, **_named: begun.append(tyre) or tyre)
-    monkeypatch.setattr("tyrefem.api.with_verbs", lambda _kind, data: data)
+    monkeypatch.setattr("tyrefem.api.studies.with_verbs", lambda _kind, data: data)
     tyrefem.study(NASA, {"mesh.size": f"{size} mm"}).run()
     assert len(begun) == 1
     nearly = f"{0.9 * float(size)} mm"

@@ -72,9 +72,14 @@ def plan(
     with results_folder(place, "plan", FILES, inputs=read, force=force, keeps=[f"{PROGRESS}*/*/*.npz"]) as folder:
         store = ProgressStore(folder / PROGRESS)
         with keeping(lambda: store.kept), stages(quiet=quiet or as_json) as tick:
-            columns = {} if after is None or is_folder else {"ignore": tuple(ignore or ()), "rename": renamed(rename)}
+            table = after is not None and not is_folder
             result = loaded.plan(
-                after, workers=workers or min(os.cpu_count() or 1, MOST_WORKERS), progress=tick, store=store, **columns
+                after,
+                workers=workers or min(os.cpu_count() or 1, MOST_WORKERS),
+                progress=tick,
+                store=store,
+                ignore=tuple(ignore or ()) if table else None,
+                rename=renamed(rename) if table else None,
             )
             tick("drawing", 0, 0)
             page = result.save(folder)

@@ -151,7 +151,7 @@ class Runs:
     known: Mapping[str, ResultData] = field(default_factory=dict)
     executor: Executor | None = None
     store: AnswerStore | None = None
-    done: Callable[[int], None] = lambda count: None
+    done: Callable[[int], object] = lambda count: None
     #: (drive, input) -> finished run; training data of a reduced model.
     computed: dict[Key, Computed] = field(default_factory=dict)
     training: list[Snapshots] = field(default_factory=list)

@@ -42,10 +42,10 @@ class ComparisonOptions(TypedDict, total=False):
     rename: Mapping[str, str] | None
     k: float
     executor: Executor | None
-    progress: Callable[[int, int], None] | None
+    progress: Callable[[int, int], object] | None
     reduced: str
     store: AnswerStore | None
-    begin: Callable[[str], None] | None
+    begin: Callable[[str], object] | None
     settings: ReducedInputSettings
 
 
@@ -149,10 +149,10 @@ class _Work:
     """Execution of the simulations, see `compare`."""
 
     executor: Executor | None = None
-    progress: Callable[[int, int], None] | None = None
+    progress: Callable[[int, int], object] | None = None
     reduced: str = "auto"
     store: AnswerStore | None = None
-    begin: Callable[[str], None] | None = None
+    begin: Callable[[str], object] | None = None
     settings: ReducedInputSettings = DEFAULT
 
     def check(self) -> None:
@@ -160,7 +160,7 @@ class _Work:
         if self.reduced not in ("auto", "never"):
             raise InputError(f"reduced must be 'auto' or 'never', not {self.reduced!r}")
 
-    def done(self, total: int) -> Callable[[int], None]:
+    def done(self, total: int) -> Callable[[int], object]:
         """Function to be called with the number of finished simulations."""
         return lambda count: self.progress(count, total) if self.progress is not None else None
 

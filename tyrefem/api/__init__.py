@@ -1,0 +1,37 @@
+"""The public classes: a study and its results, with their methods.
+
+Their base classes hold data; each method is one line that calls the package that does the work. Options of a method are
+named parameters, so that completion shows them; None as a default leaves the choice to the function that is called.
+"""
+
+from tyrefem.api.comparison import Comparison
+from tyrefem.api.design import Design
+from tyrefem.api.diagnosis import Diagnosis, ExperimentPlan
+from tyrefem.api.identification import Identification, identify
+from tyrefem.api.life import Life
+from tyrefem.api.mechanics import ForcesOverSlip, ForceTable, LoadedTyre, NaturalModes, RollingWheel
+from tyrefem.api.result import Campaign, Result
+from tyrefem.api.section import section_from_size
+from tyrefem.api.studies import Study, study
+from tyrefem.api.verbs import with_verbs
+
+__all__ = [
+    "Campaign",
+    "Comparison",
+    "Design",
+    "Diagnosis",
+    "ExperimentPlan",
+    "ForceTable",
+    "ForcesOverSlip",
+    "Identification",
+    "Life",
+    "LoadedTyre",
+    "NaturalModes",
+    "Result",
+    "RollingWheel",
+    "Study",
+    "identify",
+    "section_from_size",
+    "study",
+    "with_verbs",
+]

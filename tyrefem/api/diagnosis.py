@@ -1,0 +1,65 @@
+"""Result of a diagnosis, and the plan of the next runs and sensors."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+from tyrefem.api.verbs import with_verbs
+from tyrefem.diagnose import diagnosis
+from tyrefem.plan import steps as test_plan
+
+
+class Diagnosis(diagnosis.DiagnosisData):
+    """Result of a diagnosis, with `to_dict` and `save`."""
+
+    @classmethod
+    def of(cls, data: diagnosis.DiagnosisData) -> Diagnosis:
+        """Convert a diagnosis, and every further look at the same data, to this class."""
+        return with_verbs(cls, data, again=None if data.again is None else cls.of(data.again))
+
+    def to_dict(self) -> dict[str, Any]:
+        """Contents of `verdict.json`."""
+        from tyrefem.diagnose.record import record
+
+        return record(self)
+
+    def save(self, folder: str | Path) -> Path:
+        """Write verdict.json, amended.toml, tables, pictures and one self-contained page; return the page's path.
+
+        Raises
+        ------
+        InputError : the folder cannot be written.
+        """
+        from tyrefem.reports.diagnosis import save
+
+        return save(self, folder)
+
+
+class ExperimentPlan(test_plan.PlanData):
+    """A plan of the next runs and sensors, with `words` and `save`."""
+
+    @cached_property
+    def words(self) -> tuple[str, ...]:
+        """The remaining sets, and each step with what it is expected to tell, as sentences."""
+        from tyrefem.plan.words import plan_words
+
+        return tuple(plan_words(self))
+
+    def to_dict(self) -> dict[str, Any]:
+        """Contents of `plan.json`."""
+        from tyrefem.plan.record import record
+
+        return record(self)
+
+    def save(self, folder: str | Path) -> Path:
+        """Write plan.csv, plan-candidates.csv, plan.json, plan.png and plan.html; return the page's path.
+
+        Raises
+        ------
+        InputError : the folder cannot be written.
+        """
+        from tyrefem.reports.plan import save
+
+        return save(self, folder)

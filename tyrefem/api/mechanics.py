@@ -1,0 +1,110 @@
+"""The pressed tyre, its natural frequencies, its rolling with friction."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tyrefem.mechanics.footprint import natural_frequencies as vibrations
+from tyrefem.mechanics.footprint import press as presses
+from tyrefem.mechanics.rolling import force_table as force_tables
+from tyrefem.mechanics.rolling import roll as rolls
+from tyrefem.mechanics.rolling import slip_curve as slip_curves
+
+if TYPE_CHECKING:
+    from tyrefem.wear.ring_wear import RingWear
+
+
+class LoadedTyre(presses.Pressed):
+    """A study's tyre, inflated and pressed on the road, with `save`."""
+
+    def save(self, folder: str | Path, at: Iterable[str] = (), *, pictures: bool = True, vtk: bool = True) -> Path:
+        """Write the files of `tyrefem press`: ``press.json``, tables, pictures, ``tyre.vtu``; return the folder.
+
+        ``at``: places of the strain cycle, "r, z" or a region; by default the belt's edge and the greatest loss.
+
+        Raises
+        ------
+        InputError : a place is not in the section; the folder cannot be written.
+        """
+        from tyrefem.reports.press import write_files
+        from tyrefem.reports.press_places import cycle_places
+
+        write_files(self, Path(folder), cycle_places(self, at), self.curve(), pictures=pictures, vtk=vtk)
+        return Path(folder)
+
+
+class NaturalModes(vibrations.NaturalFrequencies):
+    """Natural frequencies of a study's inflated tyre, with `save`."""
+
+    def save(self, folder: str | Path, *, pictures: bool = True) -> Path:
+        """Write ``modes.csv``, ``modes.json``, and with pictures ``modes.png``; return the folder.
+
+        Raises
+        ------
+        InputError : the folder cannot be written.
+        """
+        from tyrefem.reports.modes import write_files
+
+        write_files(self, Path(folder), pictures=pictures)
+        return Path(folder)
+
+
+class RollingWheel(rolls.RolledStudy):
+    """A study's tyre in steady rolling with friction, with `save`."""
+
+    def wear(self) -> RingWear:
+        """Wear of every ring of the tread, from its friction power; not compared with any measured tread.
+
+        Raises
+        ------
+        InputError : the card of region ``tread`` has no ``[wear]``.
+        """
+        from tyrefem.wear.ring_wear import ring_wear
+
+        return ring_wear(self)
+
+    def save(self, folder: str | Path, *, pictures: bool = True, vtk: bool = True) -> Path:
+        """Write ``roll.json``, ``contact.csv``, ``rings.csv``, ``contact.vtu``, pictures; return the folder.
+
+        Raises
+        ------
+        InputError : the folder cannot be written.
+        """
+        from tyrefem.reports.roll import write_files
+
+        write_files(self, Path(folder), pictures=pictures, vtk=vtk)
+        return Path(folder)
+
+
+class ForcesOverSlip(slip_curves.SlipCurve):
+    """Forces of a study's tyre over slip angle or slip, with `save`."""
+
+    def save(self, folder: str | Path, *, pictures: bool = True) -> Path:
+        """Write ``roll.json``, ``curve.csv``, and with pictures ``curve.png``; return the folder.
+
+        Raises
+        ------
+        InputError : the folder cannot be written.
+        """
+        from tyrefem.reports.roll import write_curve
+
+        write_curve(self, Path(folder), pictures=pictures)
+        return Path(folder)
+
+
+class ForceTable(force_tables.TyreForces):
+    """Forces of a study's tyre over load, slip, slip angle and camber, with `save`."""
+
+    def save(self, folder: str | Path, *, pictures: bool = True) -> Path:
+        """Write ``forces.csv``, ``forces.json``, ``tyre.tir``, and with pictures ``forces.png``; return the folder.
+
+        Raises
+        ------
+        InputError : the folder cannot be written.
+        """
+        from tyrefem.reports.forces import write_files
+
+        write_files(self, Path(folder), pictures=pictures)
+        return Path(folder)

@@ -1,0 +1,58 @@
+"""A study with its methods, by name or path."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tyrefem.api.result import Campaign, Result
+from tyrefem.api.study_mechanics import StudyMechanics
+from tyrefem.api.study_questions import StudyQuestions
+from tyrefem.api.verbs import with_verbs
+from tyrefem.mechanics.strain_laws import strain_law
+
+if TYPE_CHECKING:
+    from tyrefem.inputs.study import StudyData
+    from tyrefem.inputs.study_parts import StudyParts
+
+
+class Study(StudyQuestions, StudyMechanics):
+    """A study, with methods to run, compare, diagnose and sweep it. `study` makes it; `replace` changes it.
+
+    >>> coarse = study("nasa-22x5.5-8pr", {"mesh.size": "12 mm", "drive.duration": "60 s"})
+    >>> f"{coarse.run().peaks['tyre'].temperature:.0f} degC"
+    '36 degC'
+    """
+
+    def __post_init__(self, like: StudyData | None, built: StudyParts | None) -> None:
+        super().__post_init__(like, built)
+        # The data's package does not import the strain laws; this class checks their name.
+        strain_law(self)
+
+    def run(self, progress: Callable[[float], None] | None = None, *, partial: bool = False) -> Result:
+        """Simulate the drive. ``progress`` is called with the time (s) after every step.
+
+        ``partial``: return the finished part after Ctrl-C (``result.history.interrupted``); else raise it.
+        """
+        from tyrefem.simulation.estimate import RunEstimate
+        from tyrefem.simulation.run import run
+
+        RunEstimate.of(self).announce()
+        return with_verbs(Result, run(self, progress, partial=partial))
+
+    def campaign(self) -> Campaign:
+        """The cases of the study's table, each of them a study."""
+        return Campaign.of(self)
+
+
+def study(name: str | Path, changes: Mapping[str, Any] | None = None, case: str | None = None) -> Study:
+    """Load a study by name or path; ``changes`` gives new values by dotted name.
+
+    ``case``: case of a campaign; ``changes`` then change the case's values.
+
+    Raises
+    ------
+    InputError : the study does not exist, or it or a card that it names has an error: file, field, what is allowed.
+    """
+    return Study.load(name, changes, case)
