@@ -28,6 +28,51 @@ def test_a_phase_by_name_or_by_number():
         changed(PHASES, "drive.phases.c.load", "3 kN")
 
 
+def test_several_entries_of_one_name_need_a_number():
+    data = {"effects": [{"name": "sensor-offset", "sensor": "a"}, {"name": "sensor-offset", "sensor": "b"}]}
+    words = r"several entries have the name 'sensor-offset': give a number: 0 \(sensor-offset\), 1 \(sensor-offset\)"
+    with pytest.raises(tf.InputError, match=words):
+        changed(data, "effects.sensor-offset.offset", "1 delta_degC")
+    assert changed(data, "effects.1.offset", "1 delta_degC")["effects"][1]["offset"] == "1 delta_degC"
+
+
+def test_a_layer_by_its_name_or_number():
+    study = tf.study("passenger-205-55r16")
+    gauge = {"unit": "mm", "values": [1.5, 1.4]}
+    by_name, by_number = (study.replace({f"section.layers.{n}.thickness": gauge}) for n in ("liner", "0"))
+    assert by_name.section.layers[0].thickness.values == (0.0015, 0.0014)
+    assert by_number.section.layers[0] == by_name.section.layers[0]
+    with pytest.raises(tf.InputError, match="no entry 'linr'; did you mean 'liner'"):
+        study.replace({"section.layers.linr.thickness": gauge})
+
+
+def test_a_layer_by_a_part_of_its_name():
+    """The layer is `belt-2 and turn-up`; `belt` alone names none."""
+    study = tf.study("passenger-205-55r16")
+    assert value_at(study.data, "section.layers.belt-2.name", study.folder) == "belt-2 and turn-up"
+    assert value_at(study.data, "section.layers.turn-up.name", study.folder) == "belt-2 and turn-up"
+    lower = study.replace({"section.layers.belt-1.regions.sidewall.to": "-36 mm"}).section
+    ends = dict(zip(lower.layers[2].regions.names, lower.layers[2].regions.ends, strict=True))
+    assert ends["sidewall"] == pytest.approx(lower.line.length - 0.036)
+    with pytest.raises(tf.InputError, match="no entry 'belt'"):
+        study.replace({"section.layers.belt.name": "x"})
+
+
+def test_the_angle_of_a_layer_s_cords():
+    """`section.layers.belt-1.angle` means the cords of the region; the study itself stays as it was."""
+    study = tf.study("passenger-205-55r16")
+    before = copy.deepcopy(study.data)
+    turned = study.replace({"section.layers.belt-1.angle": "20 deg"})
+    assert turned.materials["belt-1"].cords.angle == pytest.approx(0.3490658504)
+    assert turned.data == study.replace({"materials.belt-1.cords.angle": "20 deg"}).data
+    assert study.data == before
+    assert value_at(turned.data, "section.layers.belt-1.angle", study.folder) == "20 deg"
+    with pytest.raises(tf.InputError, match="did you mean 'belt-1'"):
+        study.replace({"section.layers.belt1.angle": "20 deg"})
+    of_size = tf.study("measured-205-60r15").replace({"section.layers.belt-1.angle": "20 deg"})
+    assert of_size.materials["belt-1"].cords.angle == pytest.approx(0.3490658504)
+
+
 def test_load_and_deflection_drop_each_other():
     after = changed(PHASES, "drive.phases.a.deflection", "2 mm")
     assert after["drive"]["phases"][0] == {"name": "a", "deflection": "2 mm"}

@@ -26,7 +26,13 @@ def study():
         ({"s": "-1 in", "depth": "1 mm"}, "is off the section"),
         ({"at": ["0.2 m", "0 m"]}, "the sensor is outside the rubber"),
         ({"at": ["0.27 m", "-5 mm"]}, "the sensor is outside the rubber"),
-        ({"s": "1 in"}, "give either 's' and 'depth', or 'at"),
+        ({"s": "1 in"}, "give either 's' and 'depth', 's' and 'below_surface', or 'at"),
+        ({"s": "1 in", "depth": "1 mm", "below_surface": "1 mm"}, "give either 's' and 'depth'"),
+        ({"at": ["0.27 m", "0 m"], "below_surface": "1 mm"}, "give either 's' and 'depth'"),
+        (
+            {"s": "1 in", "below_surface": "40 mm"},
+            "below_surface = 40.00 mm is outside the rubber, which is 18.84 mm thick at s = 25.4 mm",
+        ),
     ],
 )
 def test_a_sensor_outside_the_rubber_is_named(study, place, message):
@@ -46,6 +52,42 @@ def test_sensors_on_the_very_surface_read(study):
     result = study.replace({f"sensors.{name}": place for name, place in places.items()}).run()
     assert result.readings[list(places)].iloc[-1].between(25, 60).all()
     assert np.isfinite(result.gradient_at_sensors.to_numpy()).all()
+
+
+def test_a_sensor_below_the_outer_surface_is_that_far_from_it(study):
+    """As far from the surface as it says, along the normal; the surface itself at nought."""
+    below = study.replace({"sensors.b": {"s": "1 in", "below_surface": "2 mm"}}).stated_places["b"]
+    surface = study.replace({"sensors.b": {"s": "1 in", "below_surface": "0 mm"}}).stated_places["b"]
+    assert np.hypot(below[0] - surface[0], below[1] - surface[1]) == pytest.approx(2e-3, rel=1e-9)
+    assert study.section.locate([surface])[1][0] == pytest.approx(study.section.rubber_thickness([0.0254])[0])
+    thick = study.replace({"sensors.b": {"s": "1 in", "below_surface": "2 mm"}, "section.thickness_scale.tread": 1.1})
+    moved = thick.stated_places["b"]
+    assert thick.section.rubber_thickness([0.0254])[0] - thick.section.locate([moved])[1][0] == pytest.approx(2e-3)
+
+
+def test_below_the_surface_of_a_groove_is_below_its_bottom():
+    study = tf.study("passenger-205-55r16").replace({"sensors": {"g": {"s": "14.801 mm", "below_surface": "1 mm"}}})
+    wall = float(study.section.rubber_thickness([14.801e-3])[0])
+    assert wall < float(study.section.total_thickness([14.801e-3])[0]) - 5e-3
+    assert study.section.locate([study.stated_places["g"]])[1][0] == pytest.approx(wall - 1e-3)
+
+
+def test_one_way_of_placing_replaces_the_other(study):
+    below = study.replace({"sensors.crown-inner.below_surface": "2 mm"})
+    assert below.sensors["crown-inner"].depth is None
+    assert below.replace({"sensors.crown-inner.depth": "3 mm"}).sensors["crown-inner"].below_surface is None
+    assert below.replace({"sensors.crown-inner.at": ["0.27 m", "0 m"]}).sensors["crown-inner"].s is None
+
+
+def test_a_misplaced_sensor_moves_from_below_the_surface_as_from_its_depth(study):
+    """Its reading with the effect `sensor-misplaced` is the same, however the place was given."""
+    depth = float(study.section.rubber_thickness([0.0254])[0]) - 2e-3
+    moved = {"effects": [{"name": "sensor-misplaced", "sensor": "x", "deeper": "1 mm"}]}
+    readings = [
+        study.replace({"sensors": {"x": {"s": "1 in", **place}}, **moved}).run().readings["x"].to_numpy()
+        for place in ({"below_surface": "2 mm"}, {"depth": f"{depth!r} m"})
+    ]
+    assert readings[0] == pytest.approx(readings[1], abs=1e-9)
 
 
 def test_two_ways_of_placing_read_the_same(study):

@@ -15,6 +15,7 @@ from typing import Annotated, Any, ClassVar, Self, get_args
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from tyrefem.brief import Brief, short
+from tyrefem.cards.entries import entry_number
 from tyrefem.cards.plausible import Plausible
 from tyrefem.errors import InputError, InputWarning, nearest
 from tyrefem.output import note_input
@@ -193,6 +194,8 @@ def merged(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any
     {'k': {'source': 'a', 'along': '2 W/m/K', 'across': '1 W/m/K'}}
     >>> merged({"layers": [{"name": "liner"}, {"name": "ply"}]}, {"layers": {"1": {"name": "plies"}}})
     {'layers': [{'name': 'liner'}, {'name': 'plies'}]}
+    >>> merged({"layers": [{"name": "liner"}, {"name": "ply"}]}, {"layers": {"ply": {"k": 1}}})
+    {'layers': [{'name': 'liner'}, {'name': 'ply', 'k': 1}]}
     """
     given = [form for form in FORMS if form & set(changes)]
     dropped = set().union(*FORMS) - set().union(*given) if given else set()
@@ -208,12 +211,11 @@ def merged(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any
 
 
 def _entries(base: list[Any], changes: Mapping[str, Any], field: str) -> list[Any]:
-    """A list with changes to entries given by their number from 0: ``layers.2.regions.0.to``."""
+    """A list with changes to entries given by name or number: ``layers.2.regions.0.to``, ``layers.tread.source``."""
     result = list(base)
-    for number, value in changes.items():
-        if not (number.isdigit() and int(number) < len(base)):
-            raise InputError(f"no entry '{number}'; allowed: 0 to {len(base) - 1}", field=field)
-        below = result[int(number)]
+    for name, value in changes.items():
+        number = entry_number(base, name, field)
+        below = result[number]
         both = isinstance(below, Mapping) and isinstance(value, Mapping)
-        result[int(number)] = merged(below, value) if both else value
+        result[number] = merged(below, value) if both else value
     return result

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from tyrefem import library
+from tyrefem.cards.entries import entry_number
 from tyrefem.errors import InputError, nearest
 from tyrefem.inputs.drive_table import EXCLUSIVE_KEYS
 from tyrefem.quantity import written
@@ -35,16 +36,16 @@ def all_changed(data: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str
     result: dict[str, Any] = dict(data)
     copied: set[str] = set()
     for key, value in changes.items():
-        table = key.split(".")[0].strip().replace("-", "_")
+        parts = _parts(result, key)
+        table = parts[0]
         if table in result and table not in copied:
             result[table] = written(result[table])
             copied.add(table)
-        _change(result, key, written(value))
+        _change(result, key, parts, written(value))
     return result
 
 
-def _change(data: dict[str, Any], key: str, value: Any) -> None:
-    parts = _parts(data, key)
+def _change(data: dict[str, Any], key: str, parts: list[str], value: Any) -> None:
     _refuse_overridden(data, parts)
     if parts[0] == "section":
         _as_table(data, parts)
@@ -53,7 +54,7 @@ def _change(data: dict[str, Any], key: str, value: Any) -> None:
         place = _step(place, part, ".".join(parts[: depth + 1]), parts[: depth + 1])
     last = parts[-1]
     if isinstance(place, list):
-        place[_index(place, last, key)] = value
+        place[entry_number(place, last, key)] = value
     else:
         place[last] = value
         _drop_exclusive(parts, place)
@@ -72,9 +73,20 @@ def _parts(data: Mapping[str, Any], key: str) -> list[str]:
     parts = [part.strip().replace("-", "_") if i == 0 else part.strip() for i, part in enumerate(key.split("."))]
     if not all(parts):
         raise InputError(f"'{key}' is not a dotted name such as drive.speed")
+    if parts[:2] == ["section", "layers"] and parts[3:] == ["angle"]:
+        return ["materials", _cord_region(data, parts[2], key), "cords", "angle"]
     if parts[0] == "section" and len(parts) >= 2 and parts[1] != "base":
         return [*_section_parts(parts[1]), *parts[2:]]
     return parts
+
+
+def _cord_region(data: Mapping[str, Any], name: str, key: str) -> str:
+    """The region whose cords ``section.layers.NAME.angle`` means; cards of materials have the cords."""
+    regions = completed_materials(data.get("section"), data.get("materials", {}))
+    if name not in regions:
+        message = f"cords are of a region, as materials.REGION.cords.angle; '{name}' is none{nearest(name, regions)}"
+        raise InputError(message, field=key)
+    return name
 
 
 def _section_parts(name: str) -> list[str]:
@@ -88,7 +100,7 @@ def _section_parts(name: str) -> list[str]:
 
 def _step(place: Any, part: str, so_far: str, path: list[str]) -> Any:
     if isinstance(place, list):
-        return place[_index(place, part, so_far)]
+        return place[entry_number(place, part, so_far)]
     below = place.get(part)
     reference = so_far in _REFERENCES or (path[0] == "materials" and len(path) == 2)
     if reference and isinstance(below, str):
@@ -98,16 +110,6 @@ def _step(place: Any, part: str, so_far: str, path: list[str]) -> Any:
     elif not isinstance(below, dict | list):
         raise InputError(f"'{so_far}' is a value, not a table: nothing below it can be set", field=so_far)
     return below
-
-
-def _index(entries: list[Any], part: str, so_far: str) -> int:
-    names = [str(entry.get("name", "")) if isinstance(entry, dict) else "" for entry in entries]
-    if part in names:
-        return names.index(part)
-    if part.isdigit() and int(part) < len(entries):
-        return int(part)
-    allowed = [name or str(number) for number, name in enumerate(names)]
-    raise InputError(f"no entry '{part}'{nearest(part, allowed)}", field=so_far)
 
 
 def _refuse_overridden(data: Mapping[str, Any], parts: list[str]) -> None:
@@ -129,7 +131,12 @@ def _drop_exclusive(parts: list[str], place: dict[str, Any]) -> None:
     """Remove the alternative of a changed value: load or deflection, or a sensor's other kind of place."""
     exclusive_keys = EXCLUSIVE_KEYS if parts[0] == "drive" else {}
     if parts[0] == "sensors":
-        exclusive_keys = {"at": ["s", "depth"], "s": ["at"], "depth": ["at"]}
+        exclusive_keys = {
+            "at": ["s", "depth", "below_surface"],
+            "s": ["at"],
+            "depth": ["at", "below_surface"],
+            "below_surface": ["at", "depth"],
+        }
     for exclusive_key in exclusive_keys.get(parts[-1], []):
         place.pop(exclusive_key, None)
 
@@ -147,7 +154,7 @@ def value_at(data: Mapping[str, Any], key: str, near: Any = None) -> Any:
             card, _, _ = library.load("section" if depth == 1 else "material", place, near)
             place = with_numbers(place, card) if sized else card
         if isinstance(place, list):
-            place = place[_index(place, part, key)]
+            place = place[entry_number(place, part, key)]
         elif isinstance(place, Mapping) and part in place:
             place = place[part]
         else:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, Any
 
-from pydantic import BeforeValidator, Field
+from pydantic import BeforeValidator, Field, model_validator
 
 from tyrefem.cards import Card
 from tyrefem.errors import InputError, nearest
@@ -63,10 +63,21 @@ def _limits(value: Any) -> Limits:
 
 
 class PlaceChoice(Card):
-    """Place of a further thermocouple: ``s`` along the meridian from the crown, ``depth`` from the inner surface."""
+    """Place of a further thermocouple: ``s`` along the meridian from the crown, ``depth`` from the inner surface.
+
+    ``below_surface``, instead of ``depth``: from the outer surface.
+    """
 
     s: Annotated[float, Unit("m", ge=0)]
-    depth: Annotated[float, Unit("m", ge=0)]
+    depth: Annotated[float, Unit("m", ge=0)] | None = None
+    below_surface: Annotated[float, Unit("m", ge=0)] | None = None
+
+    @model_validator(mode="after")
+    def _one_depth(self) -> PlaceChoice:
+        if (self.depth is None) == (self.below_surface is None):
+            missing = "missing" if self.depth is None else "is given beside 'below_surface'"
+            raise InputError(f"{missing}; give either 'depth' or 'below_surface'", field="depth")
+        return self
 
 
 class PlanChoice(Card):

@@ -50,18 +50,30 @@ def sensor_place(sensor: Sensor, section: Section) -> tuple[float, float]:
             )
         return float(r), float(z)
     assert sensor.s is not None
-    assert sensor.depth is not None
     length = section.line.length
     lowest = 0.0 if section.half else -length
     if not lowest <= sensor.s <= length:
         raise InputError(
             f"s = {sensor.s * 1e3:.1f} mm is off the section; allowed: {lowest * 1e3:.1f} to {length * 1e3:.1f} mm"
         )
-    thickness = float(section.rubber_thickness([sensor.s])[0])
-    if sensor.depth > thickness * (1 + 1e-9):
-        raise InputError(
-            f"depth = {sensor.depth * 1e3:.2f} mm is outside the rubber, which is {thickness * 1e3:.2f} mm thick "
-            f"at s = {sensor.s * 1e3:.1f} mm"
-        )
-    r, z = section.place([sensor.s], [min(sensor.depth, thickness)])[0]
+    r, z = section.place([sensor.s], [depth_of(sensor.s, sensor.depth, sensor.below_surface, section)])[0]
     return float(r), float(z)
+
+
+def depth_of(s: float, depth: float | None, below_surface: float | None, section: Section) -> float:
+    """Depth from the inner surface at a station, m, of which either that or the depth below the outer surface is given.
+
+    Raises
+    ------
+    InputError : the wall is thinner there.
+    """
+    thickness = float(section.rubber_thickness([s])[0])
+    name, given = ("depth", depth) if below_surface is None else ("below_surface", below_surface)
+    assert given is not None
+    if given > thickness * (1 + 1e-9):
+        raise InputError(
+            f"{name} = {given * 1e3:.2f} mm is outside the rubber, which is {thickness * 1e3:.2f} mm thick "
+            f"at s = {s * 1e3:.1f} mm"
+        )
+    inside = min(given, thickness)
+    return inside if below_surface is None else thickness - inside

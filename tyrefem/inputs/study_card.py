@@ -180,12 +180,14 @@ class Boundaries(Card):
 class Sensor(Card):
     """A thermocouple: ``s`` along the meridian from the crown and ``depth`` from the inner surface, or ``at = [r, z]``.
 
+    ``below_surface``, instead of ``depth``: from the outer surface of the new tyre, in a groove from its bottom.
     ``lag``: first-order time constant. Standard deviations: ``noise`` of a reading, ``accuracy`` of the calibration,
     ``position_sd`` of the place, ``lag_sd`` of the lag (defaults: estimates for a hand-drilled thermocouple).
     """
 
     s: Annotated[float, Unit("m")] | None = None
     depth: Annotated[float, Unit("m", ge=0)] | None = None
+    below_surface: Annotated[float, Unit("m", ge=0)] | None = None
     at: tuple[Annotated[float, Unit("m", gt=0)], Annotated[float, Unit("m")]] | None = None
     position_sd: Annotated[float, Unit("m", ge=0)] = 1e-3
     lag: Annotated[float, Unit("s", ge=0)] = 0.0
@@ -195,9 +197,11 @@ class Sensor(Card):
 
     @model_validator(mode="after")
     def _one_place(self) -> Sensor:
-        along = self.s is not None or self.depth is not None
-        if along == (self.at is not None) or (along and (self.s is None or self.depth is None)):
-            raise InputError("give either 's' and 'depth', or 'at = [r, z]'")
+        through = (self.depth is not None) + (self.below_surface is not None)
+        along = self.s is not None and through == 1 and self.at is None
+        alone = self.at is not None and self.s is None and through == 0
+        if not (along or alone):
+            raise InputError("give either 's' and 'depth', 's' and 'below_surface', or 'at = [r, z]'")
         return self
 
 

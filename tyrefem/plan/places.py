@@ -51,27 +51,34 @@ def with_candidate_sensors(
             if name in study.sensors:
                 message = "is a sensor of the study: give the further sensor another name"
                 raise InputError(message, field=f"plan.sensors.{name}", file=study.file)
-            further[name] = (place.s, place.depth, f"{name} (s = {place.s * 1e3:.0f} mm)")
+            through = {"depth": place.depth, "below_surface": place.below_surface}
+            further[name] = (_sensor(place.s, **through), f"{name} (s = {place.s * 1e3:.0f} mm)")
     extended = study
-    for name, (s, depth, _) in further.items():
+    for name, (sensor, _) in further.items():
         try:
-            extended = extended.replace({f"sensors.{name}": {"s": f"{s:.6g} m", "depth": f"{depth:.6g} m"}})
+            extended = extended.replace({f"sensors.{name}": sensor})
         except InputError as error:
             raise InputError(error.message, field=f"plan.sensors.{name}", file=study.file) from None
     if not choice.sensors_most:
         return study, ()
     return extended, (
         *idle,
-        *(CandidatePlace(name, f"thermocouple {words}") for name, (_, _, words) in further.items()),
+        *(CandidatePlace(name, f"thermocouple {words}") for name, (_, words) in further.items()),
     )
 
 
-def _even_places(study: StudyData) -> dict[str, tuple[float, float, str]]:
-    """Name -> s, depth (m), words: even stations from crown to bead, at three depths."""
+def _sensor(s: float, **through: float | None) -> dict[str, str]:
+    """A sensor of a study: its station and depth, m."""
+    return {key: f"{value:.6g} m" for key, value in {"s": s, **through}.items() if value is not None}
+
+
+def _even_places(study: StudyData) -> dict[str, tuple[dict[str, str], str]]:
+    """Name -> sensor, words: even stations from crown to bead, at three depths."""
     section = study.section
-    places: dict[str, tuple[float, float, str]] = {}
+    places: dict[str, tuple[dict[str, str], str]] = {}
     for s in np.linspace(0.0, LAST * section.line.length, STATIONS):
         total = float(np.asarray(section.rubber_thickness(np.array([s])))[0])
         for (level, words), depth in zip(LEVELS.items(), (SKIN, total / 2, total - SKIN), strict=True):
-            places[f"s{s * 1e3:.0f}-{level}"] = (float(s), depth, f"at s = {s * 1e3:.0f} mm, {words}")
+            sensor = _sensor(float(s), depth=depth)
+            places[f"s{s * 1e3:.0f}-{level}"] = (sensor, f"at s = {s * 1e3:.0f} mm, {words}")
     return {name: place for name, place in places.items() if name not in study.sensors}
