@@ -13,6 +13,7 @@ import argparse
 import csv
 import math
 import os
+import tempfile
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -299,10 +300,13 @@ def pictures() -> None:
     """Draw the pictures of the pages."""
     from tyrefem.reports.figures.rolling import contact_figure, slip_curve_figure
     from tyrefem.reports.figures.style import png
+    from tyrefem.reports.view3d import screenshot
 
     study = tf.study(STUDY)
     rolled = study.roll(slip_angle=math.radians(2.0), slip=0.01, camber=math.radians(1.0))
     (PICTURES / "rolling-contact.png").write_bytes(png(contact_figure(rolled)))
+    with tempfile.TemporaryDirectory() as folder:
+        screenshot(rolled.to_vtk(folder), PICTURES / "rolling-tyre.png")
     curve = study.slip_curve(slip_angle=np.radians(np.linspace(-12, 12, 25)).tolist())
     (PICTURES / "rolling-curve.png").write_bytes(png(slip_curve_figure(curve)))
 

@@ -66,7 +66,8 @@ class RollingWheel(rolls.RolledStudy):
         return ring_wear(self)
 
     def save(self, folder: str | Path, *, pictures: bool = True, vtk: bool = True) -> Path:
-        """Write ``roll.json``, ``contact.csv``, ``rings.csv``, ``contact.vtu``, pictures; return the folder.
+        """Write ``roll.json``, ``contact.csv``, ``rings.csv``, ``contact.vtu``, ``tyre.vtu``, pictures; return the
+        folder.
 
         Raises
         ------
@@ -76,6 +77,20 @@ class RollingWheel(rolls.RolledStudy):
 
         write_files(self, Path(folder), pictures=pictures, vtk=vtk)
         return Path(folder)
+
+    def to_vtk(self, folder: str | Path, temperature: Any = None) -> Path:
+        """Write the whole rolling tyre, ``tyre.vtu``, and its footprint, ``contact.vtu``; return the path of the first.
+
+        ``temperature``: of the loss, degC: a number, or ``f(places)`` like `Result.temperature_field`; by default that
+        of the study's regions, else the drive's initial one.
+
+        Raises
+        ------
+        InputError : the folder cannot be written.
+        """
+        from tyrefem.reports.roll import write_vtk
+
+        return write_vtk(self, Path(folder), temperature)
 
 
 class ForcesOverSlip(slip_curves.SlipCurve):

@@ -79,7 +79,7 @@ def roll(
         ),
     ] = "linear",
     pictures: Annotated[bool, typer.Option(help="Draw the PNG pictures.")] = True,
-    vtk: Annotated[bool, typer.Option(help="Write the footprint as contact.vtu.")] = True,
+    vtk: Annotated[bool, typer.Option(help="Write the rolling tyre, tyre.vtu, and its footprint, contact.vtu.")] = True,
     out: Annotated[Path | None, typer.Option("--out", help="Folder; default: results/STUDY-roll.")] = None,
     force: ForceOption = False,
     quiet: QuietOption = False,

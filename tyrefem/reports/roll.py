@@ -14,10 +14,12 @@ from tyrefem.output import atomic_folder, atomic_path, write_json
 if TYPE_CHECKING:
     from tyrefem.mechanics.rolling.roll import RolledStudy
     from tyrefem.mechanics.rolling.slip_curve import SlipCurve
+    from tyrefem.reports.revolved_rolling import Temperature
 
 Array = NDArray[Any]
 #: Files that `write_files` and `write_curve` may write.
-FILES = ("roll.json", "contact.csv", "rings.csv", "contact.vtu", "contact.png", "rings.png", "curve.csv", "curve.png")
+FILES = ("roll.json", "contact.csv", "rings.csv", "contact.vtu", "tyre.vtu", "contact.png", "rings.png",
+         "curve.csv", "curve.png")  # fmt: skip
 
 
 def contact_table(rolled: RolledStudy) -> Any:
@@ -88,13 +90,11 @@ def write_contact(rolled: RolledStudy, path: Path) -> Path:
 
 
 def write_files(rolled: RolledStudy, folder: Path, *, pictures: bool = True, vtk: bool = True) -> None:
-    """``roll.json``, ``contact.csv``, ``rings.csv``, ``contact.vtu``, and pictures of both tables."""
+    """``roll.json``, ``contact.csv``, ``rings.csv``, pictures of both tables, ``contact.vtu``, ``tyre.vtu``."""
     with atomic_folder(folder) as place:
         write_json(rolled.summary(), place / "roll.json")
         _csv(contact_table(rolled), place / "contact.csv")
         _csv(rings_table(rolled), place / "rings.csv")
-        if vtk:
-            write_contact(rolled, place / "contact.vtu")
     if pictures:
         from tyrefem.reports.figures.rolling import contact_figure, rings_figure
         from tyrefem.reports.figures.style import png
@@ -102,6 +102,26 @@ def write_files(rolled: RolledStudy, folder: Path, *, pictures: bool = True, vtk
         with keeping(f"{folder} has the tables, but not the pictures"), atomic_folder(folder) as place:
             (place / "contact.png").write_bytes(png(contact_figure(rolled)))
             (place / "rings.png").write_bytes(png(rings_figure(rolled)))
+    if vtk:
+        with keeping(f"{folder} has the tables, but not the VTK files"):
+            write_vtk(rolled, folder)
+
+
+def write_vtk(rolled: RolledStudy, folder: Path, temperature: Temperature | None = None) -> Path:
+    """Write ``contact.vtu`` and the whole rolling tyre, ``tyre.vtu``; return the path of the latter.
+
+    ``temperature``: of the loss, as `RevolvedRolling` has it.
+
+    Raises
+    ------
+    InputError : a file cannot be written.
+    """
+    from tyrefem.reports.revolved_rolling import RevolvedRolling
+
+    with atomic_folder(folder) as place:
+        write_contact(rolled, place / "contact.vtu")
+        RevolvedRolling.of(rolled, temperature).write(place / "tyre.vtu")
+    return folder / "tyre.vtu"
 
 
 def write_curve(curve: SlipCurve, folder: Path, *, pictures: bool = True) -> None:

@@ -16,7 +16,8 @@ _LOG = logging.getLogger(__name__)
 
 
 def screenshot(source: str | Path, png: str | Path, *, timeout: float = PATIENCE) -> Path | None:
-    """Draw the temperature of a .pvd (its last time) or .vtu file, or a pressed tyre's contact, into a PNG.
+    """Draw the temperature of a .pvd (its last time) or .vtu file, or the contact of a pressed or rolling tyre, into a
+    PNG.
 
     Returns None and logs one line if the machine cannot render; this raises no error.
     """
@@ -61,7 +62,15 @@ def _draw(source: Path, png: Path) -> None:
         "height": 0.6, "width": 0.07, "fmt": "%.0f",
     }  # fmt: skip
     if "contact_pressure_Pa" in grid.point_data:
-        _add_pressed(plotter, grid, bar | {"title": "contact pressure [kPa]"})
+        _add_contact(plotter, grid, grid["contact_pressure_Pa"], bar | {"title": "contact pressure [kPa]"})
+        plotter.view_xy()
+        plotter.camera.azimuth, plotter.camera.elevation = 55.0, -28.0
+        plotter.camera.zoom(1.35)
+    elif "traction_Pa" in grid.point_data:
+        traction = (grid["traction_Pa"] ** 2).sum(axis=1) ** 0.5
+        _add_contact(plotter, grid, traction, bar | {"title": "friction [kPa]"})
+        plotter.view_vector((0.9, -0.5, -0.95), viewup=(0.0, 0.0, 1.0))
+        plotter.camera.zoom(1.3)
     else:
         _add_temperature(plotter, grid, bar)
     plotter.screenshot(str(png))
@@ -86,22 +95,20 @@ def _add_temperature(plotter: Any, grid: Any, bar: dict[str, Any]) -> None:
         plotter.camera.zoom(1.35)
 
 
-def _add_pressed(plotter: Any, grid: Any, bar: dict[str, Any]) -> None:
-    """Show the tyre from below and from one side, grey outside the contact, so that the footprint is visible."""
+def _add_contact(plotter: Any, grid: Any, values: Any, bar: dict[str, Any]) -> None:
+    """Show values of the points, Pa, in the contact; the tyre is grey outside it."""
     import numpy as np
 
+    grid["contact"] = np.asarray(values) / 1e3
     surface = grid.extract_surface(algorithm="dataset_surface")
-    pressure = np.asarray(surface["contact_pressure_Pa"]) / 1e3
-    surface["contact pressure"] = np.where(pressure > 0, pressure, np.nan)
-    touching = pressure[pressure > 0]
+    inside = np.asarray(surface["contact"])
+    touching = inside[inside > 0]
+    surface["contact"] = np.where(inside > 0, inside, np.nan)
     most = float(np.quantile(touching, 0.97)) if len(touching) else 1.0
     plotter.add_mesh(
-        surface, scalars="contact pressure", cmap="viridis", clim=(0, most), nan_color="#c8c8c8", scalar_bar_args=bar,
+        surface, scalars="contact", cmap="viridis", clim=(0, most), nan_color="#c8c8c8", scalar_bar_args=bar,
         ambient=0.35, diffuse=0.7, smooth_shading=False,
     )  # fmt: skip
-    plotter.view_xy()
-    plotter.camera.azimuth, plotter.camera.elevation = 55.0, -28.0
-    plotter.camera.zoom(1.35)
 
 
 if __name__ == "__main__":

@@ -6,11 +6,15 @@ import functools
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
 from tyrefem.mechanics.footprint.compliance import interpolation, solved_harmonics
 from tyrefem.mechanics.rolling.lossy_harmonics import LossyHarmonics
 from tyrefem.mechanics.rolling.section_fields import SectionFields
+from tyrefem.mechanics.rolling.tread_influence import TreadInfluence
+
+Complex = NDArray[np.complex128]
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,18 +27,21 @@ class BodyLoss(Brief):
 
     Parameters
     ----------
-    fields : the section under the contact forces.
+    influence : compliance of the points of the tread. waves : (harmonics + 1, 3, m) forces on them, as `force_waves`.
+    fields : the section under these forces.
     """
 
+    influence: TreadInfluence
+    waves: Complex
     fields: SectionFields
 
     @functools.cached_property
     def energy(self) -> float:
         """Energy lost in a revolution by the whole tyre, J; zero without loss. By the compliance of the tread."""
-        influence, highest = self.fields.grid.influence, self.fields.grid.harmonics
+        influence, highest = self.influence, len(self.waves) - 1
         if not influence.lossy:
             return 0.0
-        weights, waves = interpolation(highest), self.fields.waves.reshape(highest + 1, -1)
+        weights, waves = interpolation(highest), self.waves.reshape(highest + 1, -1)
         total = 0.0
         for column, solved in enumerate(solved_harmonics(highest)):
             served = np.flatnonzero(weights[:, column])
@@ -47,7 +54,7 @@ class BodyLoss(Brief):
     @functools.cached_property
     def energy_of_section(self) -> float:
         """The same energy by the amplitudes U of the whole section and K''_n: a check, far slower."""
-        harmonics = self.fields.grid.influence.tread.harmonics
+        harmonics = self.influence.tread.harmonics
         if not isinstance(harmonics, LossyHarmonics):
             return 0.0
         total = 0.0

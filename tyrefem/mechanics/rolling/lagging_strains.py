@@ -9,11 +9,23 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.mechanics.footprint.elements import SectionElements
 from tyrefem.mechanics.footprint.footprint import Footprint
 from tyrefem.mechanics.footprint.strain_harmonics import StrainHarmonics
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
+
+
+def strain_amplitudes(elements: SectionElements, motion: Complex) -> Complex:
+    """(harmonics + 1, 6, n_elements, n_points) E_n of a motion (harmonics + 1, n_dofs), m, as `RollingHarmonics`."""
+    return np.stack([elements.strain(n, u.real) + 1j * elements.strain(n, u.imag) for n, u in enumerate(motion)])
+
+
+def strain_waves(highest: int, angles: Array) -> Complex:
+    """(6, highest + 1, n_angles): e^(i n t) for rr, zz, tt, rz, and -i e^(i n t) for rt, zt."""
+    turn = np.exp(1j * np.multiply.outer(np.arange(highest + 1), np.asarray(angles)))
+    return np.stack([turn] * 4 + [-1j * turn] * 2)
 
 
 class RollingHarmonics(Protocol):
@@ -78,13 +90,11 @@ class LaggingStrains(StrainHarmonics):
     @functools.cached_property
     def amplitudes(self) -> Any:
         """(harmonics + 1, 6, n_elements, n_points) complex E_n."""
-        strain = self.elements.strain
-        return np.stack([strain(n, u.real) + 1j * strain(n, u.imag) for n, u in enumerate(self._lagging.amplitudes)])
+        return strain_amplitudes(self.elements, self._lagging.amplitudes)
 
     def waves(self, angles: Array) -> Any:
         """(6, harmonics + 1, n_angles) complex: e^(i n t), and -i e^(i n t) for rt and zt."""
-        turn = np.exp(1j * np.multiply.outer(np.arange(self._lagging.harmonics + 1), np.asarray(angles)))
-        return np.stack([turn] * 4 + [-1j * turn] * 2)
+        return strain_waves(len(self.amplitudes) - 1, angles)
 
     def strain(self, angles: Array, elements: Any = slice(None)) -> Array:
         """(6, n_elements, n_points, n_angles) strain of chosen elements at angles, rad."""

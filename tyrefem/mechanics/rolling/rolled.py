@@ -17,7 +17,7 @@ from tyrefem.mechanics.rolling.body_loss import BodyLoss
 from tyrefem.mechanics.rolling.friction import OPEN, SLIP, FrictionForces
 from tyrefem.mechanics.rolling.rolling_grid import RollingGrid
 from tyrefem.mechanics.rolling.rolling_motion import RollingMotion
-from tyrefem.mechanics.rolling.section_fields import SectionFields
+from tyrefem.mechanics.rolling.section_fields import SectionFields, force_waves
 
 Array = NDArray[np.float64]
 #: The wheel's torque of a force f at a place p of (x forward, y down, z left) is f . (TORQUE p), N m.
@@ -190,15 +190,27 @@ class RolledTyre(Brief):
         return float(self.power_map.sum())
 
     @functools.cached_property
+    def components(self) -> Array:
+        """(n_angles, m, 3) forces along (r, z, t), N."""
+        return np.asarray(np.einsum("jpx,jcx->jpc", self._map(self.vectors), self.grid.wheel_axes))
+
+    @functools.cached_property
     def fields(self) -> SectionFields:
-        """Motion of the whole section."""
-        vectors = self._map(self.vectors)
-        return SectionFields(self.grid, np.asarray(np.einsum("jpx,jcx->jpc", vectors, self.grid.wheel_axes)))
+        """Small motion of the whole section under the contact forces."""
+        return SectionFields.of(self.grid, self.components, self.deflection)
+
+    @functools.cached_property
+    def added_fields(self) -> SectionFields:
+        """`fields`; beside a pressed shape, those of the forces that friction adds to it."""
+        shape = self.grid.shape_forces
+        if shape is None:
+            return self.fields
+        return SectionFields.of(self.grid, self.components - np.moveaxis(shape, 1, 2), self.deflection)
 
     @functools.cached_property
     def body_loss(self) -> BodyLoss:
         """Loss of the rubber; none where the stiffness has none."""
-        return BodyLoss(self.fields)
+        return BodyLoss(self.grid.influence, force_waves(self.grid, self.components), self.fields)
 
     @property
     def loss_power(self) -> float:

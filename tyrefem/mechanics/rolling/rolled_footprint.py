@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.brief import Brief
 from tyrefem.cache import Cache
 from tyrefem.errors import InputError
 from tyrefem.materials.reads import FEM_ROLLING, values_read
@@ -18,17 +17,15 @@ from tyrefem.mechanics.footprint.footprint import Footprint
 from tyrefem.mechanics.footprint.pressed_tyre import inputs
 from tyrefem.mechanics.footprint.strain_harmonics import StrainHarmonics
 from tyrefem.mechanics.rolling.friction_rings import FrictionRings, contact_angles
-from tyrefem.mechanics.rolling.lagging_strains import LaggingFootprint, LaggingStrains
+from tyrefem.mechanics.rolling.lagging_strains import LaggingFootprint, LaggingStrains, strain_amplitudes
 from tyrefem.mechanics.rolling.roll import TOLERANCE, RolledStudy, WheelOnRoad, friction_card, settled, wheel_on_road
 from tyrefem.mechanics.rolling.rolling_motion import RollingMotion
-from tyrefem.mechanics.rolling.section_fields import SectionFields, section_motion
+from tyrefem.mechanics.rolling.section_fields import SectionFields
 
 if TYPE_CHECKING:
     from tyrefem.inputs.loading import LoadCase
     from tyrefem.inputs.study import StudyData
     from tyrefem.mechanics.footprint.press import Pressed
-    from tyrefem.mechanics.rolling.rolled import RolledTyre
-    from tyrefem.mechanics.rolling.rolling_grid import RollingGrid
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -39,73 +36,32 @@ SLOWEST = 0.1
 
 
 @dataclass(frozen=True, eq=False)
-class RollingFields(Brief):
-    """Motion of the whole section under the contact forces of a rolling tyre.
-
-    Parameters
-    ----------
-    tread : its compliance. loads : (harmonics + 1, 3, m) force amplitudes at the section's tread nodes along
-        (r, z, t), N per radian. deflection : m.
-    """
-
-    tread: Any
-    loads: Complex
-    deflection: float
-
-    @classmethod
-    def of(cls, state: RolledTyre) -> RollingFields:
-        """The fields of a rolling tyre; beside a pressed shape, those of the forces that friction adds to it."""
-        grid = state.grid
-        if grid.shape is None:
-            fields = state.fields
-        else:
-            fields = SectionFields(grid, state.fields.components - np.moveaxis(_shape_forces(grid), 1, 2))
-        loads = fields.loads
-        loads[0] = loads[0].real
-        return cls(grid.influence.tread, loads, state.deflection)
-
-    @property
-    def harmonics(self) -> int:
-        """Highest harmonic."""
-        return len(self.loads) - 1
-
-    @functools.cached_property
-    def amplitudes(self) -> Complex:
-        """(harmonics + 1, n_dofs) complex amplitudes U, m, of u = Re((U_r, U_z, -i U_t) e^(i n t))."""
-        return section_motion(self.tread, self.loads)
-
-
-def _shape_forces(grid: RollingGrid) -> Array:
-    """(n_angles, 3, m) forces of the pressed shape along (r, z, t), turned as the shape has, N."""
-    assert grid.shape is not None
-    angles = grid.angles + grid.turn
-    return grid.shape.forces(grid.influence, grid.harmonics, angles)
-
-
-@dataclass(frozen=True, eq=False)
 class RolledStrains(LaggingStrains):
     """Strains of a `RolledFootprint`. In large motion: Green's of the pressed tyre, turned round the wheel as its shape
-    is, and the linear strains of the forces that friction adds."""
+    is, and the linear strains of the forces that friction adds.
+
+    ``side`` : of `SectionFields.sides`; None: of a half section, its symmetric motion.
+    """
+
+    side: int | None = None
 
     @functools.cached_property
     def amplitudes(self) -> Any:
         """(harmonics + 1, 6, n_elements, n_points) complex E_n."""
-        added, footprint = super().amplitudes, self.footprint
+        footprint = self.footprint
+        assert isinstance(footprint, RolledFootprint)
+        added = strain_amplitudes(self.elements, footprint.added(self.side))
         if footprint.balanced is None:
             return added
-        assert isinstance(footprint, RolledFootprint)
-        pressed = StrainHarmonics(footprint.tyre.footprint).amplitudes
-        highest = max(len(pressed), len(added))
-        turn = np.exp(1j * footprint.turn * np.arange(len(pressed)))
-        total = np.zeros((highest, *pressed.shape[1:]), dtype=complex)
-        total[: len(pressed)] += turn[:, None, None, None] * pressed
-        total[: len(added)] += added
-        return total
+        return _sum(footprint.turned(StrainHarmonics(footprint.tyre.footprint).amplitudes), added)
 
-    def waves(self, angles: Array) -> Any:
-        """(6, harmonics + 1, n_angles) complex: e^(i n t), and -i e^(i n t) for rt and zt."""
-        turn = np.exp(1j * np.multiply.outer(np.arange(len(self.amplitudes)), np.asarray(angles)))
-        return np.stack([turn] * 4 + [-1j * turn] * 2)
+
+def _sum(first: Complex, second: Complex) -> Complex:
+    """Sum of amplitudes (harmonics + 1, ...) with different highest harmonics."""
+    total = np.zeros((max(len(first), len(second)), *first.shape[1:]), dtype=complex)
+    total[: len(first)] += first
+    total[: len(second)] += second
+    return total
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,8 +72,9 @@ class RolledFootprint(LaggingFootprint):
 
     Parameters
     ----------
-    rolling : `RollingFields` of the tyre. travel : m rolled per radian over the share of the speed that the drive's
-        slip leaves. friction : of the rings. touched_length, touched_area : m, m2. pressed : the upright tyre.
+    rolling : `SectionFields` of the tyre; in large motion those of the forces that friction adds.
+    travel : m rolled per radian over the share of the speed that the drive's slip leaves. friction : of the rings.
+    touched_length, touched_area : m, m2. pressed : the upright tyre.
     turn : rad, of the pressed shape round the wheel in large motion.
     """
 
@@ -131,6 +88,28 @@ class RolledFootprint(LaggingFootprint):
     def cycle(self) -> RolledStrains:
         """Strains over a revolution."""
         return RolledStrains(self)
+
+    @property
+    def sides(self) -> tuple[RolledStrains, ...]:
+        """Strains of a full section; of a half section, of the side z > 0 and of the mirror image of the other."""
+        assert isinstance(self.rolling, SectionFields)
+        return tuple(RolledStrains(self, side) for side in range(1 if self.rolling.antisymmetric is None else 2))
+
+    def added(self, side: int | None = None) -> Complex:
+        """(harmonics + 1, n_dofs) motion of `rolling`, m; ``side``: as `RolledStrains`."""
+        assert isinstance(self.rolling, SectionFields)
+        return self.rolling.amplitudes if side is None else self.rolling.sides[side]
+
+    def turned(self, amplitudes: Array) -> Complex:
+        """Amplitudes (harmonics + 1, ...) of the pressed tyre, turned round the wheel as its shape is."""
+        turn = np.exp(1j * self.turn * np.arange(len(amplitudes)))
+        return np.asarray(turn.reshape(-1, *np.ones(amplitudes.ndim - 1, dtype=int)) * amplitudes)
+
+    def motion_of(self, side: int) -> Complex:
+        """(harmonics + 1, n_dofs) amplitudes U, m, of the whole motion beyond inflation, u = Re((U_r, U_z, -i U_t)
+        e^(i n t)), of one of `sides`."""
+        added = self.added(side)
+        return added if self.balanced is None else _sum(self.turned(self.tyre.footprint.amplitudes), added)
 
     @property
     def tyre(self) -> Pressed:
@@ -159,7 +138,7 @@ class RolledFootprint(LaggingFootprint):
         along, across = (width[influence.source[0]] for width in influence.tread.widths)
         return cls(
             **parts,
-            rolling=RollingFields.of(state),
+            rolling=state.added_fields,
             travel=state.travel * forward,
             friction=FrictionRings.of(rolled),
             touched_length=float(lengths.max()),

@@ -125,6 +125,13 @@ class RollingGrid(Brief):
         return np.asarray(self._kept["shape"](self.angles + self.turn + shift))
 
     @functools.cached_property
+    def shape_forces(self) -> Array | None:
+        """(n_angles, 3, m) forces of the pressed shape along (r, z, t), turned as it has, N; None without a shape."""
+        if self.shape is None:
+            return None
+        return self.shape.forces(self.influence, self.harmonics, self.angles + self.turn)
+
+    @functools.cached_property
     def offsets(self) -> Array | float:
         """(k, 3) what the pressed shape adds to the inflated one, (x, y, z), m."""
         return 0.0 if self.shape is None else self.from_wheel(self.shape_at(0.0))

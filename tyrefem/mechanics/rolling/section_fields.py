@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from tyrefem.brief import Brief
 from tyrefem.mechanics.footprint.compliance import TreadCompliance, interpolation, solved_harmonics
 from tyrefem.mechanics.footprint.elements import COMPONENTS
+from tyrefem.mechanics.rolling.lagging_strains import strain_amplitudes, strain_waves
 from tyrefem.mechanics.rolling.lossy_harmonics import LossyHarmonics
 from tyrefem.mechanics.rolling.rolling_grid import RollingGrid
 from tyrefem.mechanics.rolling.tread_influence import MIRROR, PHASE
@@ -38,71 +39,74 @@ def section_motion(tread: TreadCompliance, waves: Complex) -> Complex:
     return moved
 
 
+def force_waves(grid: RollingGrid, components: Array) -> Complex:
+    """(harmonics + 1, 3, m) amplitudes of forces (n_angles, m, 3) along (r, z, t), N per radian:
+    F = Re(phase F_n e^(i n t))."""
+    n = np.arange(grid.harmonics + 1)
+    shares = np.sinc(n * grid.step / (2 * np.pi)) ** 2 / np.where(n == 0, 2 * np.pi, np.pi)
+    waves = shares[:, None] * np.exp(-1j * np.multiply.outer(n, grid.angles))
+    return np.asarray(np.einsum("nj,jpc->ncp", waves, components) / PHASE[:, None])
+
+
 @dataclass(frozen=True, eq=False)
 class SectionFields(Brief):
-    """Displacements u = Re((U_r, U_z, -i U_t) e^(i n t)) of a section, and their strains.
+    """Displacements u = Re((U_r, U_z, -i U_t) e^(i n t)) of a section under forces on its tread, and their strains.
 
-    The forces of a half section's two sides are half a symmetric and half an antisymmetric pair.
+    The forces of a half section's two sides are half a symmetric and half an antisymmetric pair. Made by `of`.
 
     Parameters
     ----------
-    grid : points of the tread. components : (n_angles, m, 3) forces of the road on them along (r, z, t), N.
+    tread : compliance of the section. loads : (harmonics + 1, 3, nodes) force amplitudes along (r, z, t) at the tread's
+        nodes, N per radian; of a half section, their symmetric part.
+    deflection : m, of the tyre that bears them.
+    antisymmetric : of a half section, compliance and loads of the antisymmetric part.
     """
 
-    grid: RollingGrid
-    components: Array
+    tread: TreadCompliance
+    loads: Complex
+    deflection: float = 0.0
+    antisymmetric: tuple[TreadCompliance, Complex] | None = None
 
-    @functools.cached_property
-    def waves(self) -> Complex:
-        """(harmonics + 1, 3, m) amplitudes of the forces, N per radian: F = Re(phase F_n e^(i n t))."""
-        n = np.arange(self.grid.harmonics + 1)
-        shares = np.sinc(n * self.grid.step / (2 * np.pi)) ** 2 / np.where(n == 0, 2 * np.pi, np.pi)
-        waves = shares[:, None] * np.exp(-1j * np.multiply.outer(n, self.grid.angles))
-        return np.asarray(np.einsum("nj,jpc->ncp", waves, self.components) / PHASE[:, None])
+    @classmethod
+    def of(cls, grid: RollingGrid, components: Array, deflection: float = 0.0) -> SectionFields:
+        """Under forces (n_angles, m, 3) of the road on the points of a grid along (r, z, t), N."""
+        influence, waves = grid.influence, force_waves(grid, components)
+        nodes, signs = influence.source
 
-    @functools.cached_property
-    def loads(self) -> Complex:
-        """(harmonics + 1, 3, nodes) of the forces at the section's nodes; of a half section, their symmetric part."""
-        influence = self.grid.influence
+        def on_nodes(amplitudes: Complex, chosen: NDArray[np.bool_]) -> Complex:
+            placed = np.zeros((*amplitudes.shape[:2], len(influence.tread.nodes)), dtype=complex)
+            placed[:, :, nodes[chosen]] = amplitudes[:, :, chosen]
+            return placed
+
         if not influence.tread.half:
-            return self._on_nodes(self.waves)
-        here, there = self._halves
-        return (here + there) / 2
+            return cls(influence.tread, on_nodes(waves, np.full(len(nodes), True)), deflection)
+        # The side z > 0, and the mirror image of the forces on the other.
+        here, there = on_nodes(waves, signs > 0), on_nodes(waves * MIRROR[:, None], signs < 0)
+        odd = (TreadCompliance(influence.antisymmetric), (here - there) / 2)
+        return cls(influence.tread, (here + there) / 2, deflection, odd)
+
+    @property
+    def harmonics(self) -> int:
+        """Highest harmonic."""
+        return len(self.loads) - 1
 
     @functools.cached_property
-    def _halves(self) -> tuple[Complex, Complex]:
-        """Forces on the side z > 0 of a half section, and the mirror image of those on the other."""
-        _, signs = self.grid.influence.source
-        return self._on_nodes(self.waves, signs > 0), self._on_nodes(self.waves * MIRROR[:, None], signs < 0)
+    def amplitudes(self) -> Complex:
+        """(harmonics + 1, n_dofs) amplitudes U, m; of a half section, of its symmetric motion."""
+        return section_motion(self.tread, self.loads)
 
     @functools.cached_property
     def sides(self) -> tuple[Complex, ...]:
         """(harmonics + 1, n_dofs) amplitudes U, m, of a full section; of a half section, of the side z > 0 and of the
         mirror image of the other."""
-        influence, tread = self.grid.influence, self.grid.influence.tread
-        if not tread.half:
-            return (section_motion(tread, self.loads),)
-        here, there = self._halves
-        same = section_motion(tread, self.loads)
-        other = section_motion(TreadCompliance(influence.antisymmetric), (here - there) / 2)
-        return same + other, same - other
-
-    def _on_nodes(self, waves: Complex, chosen: NDArray[np.bool_] | slice = slice(None)) -> Complex:
-        """(harmonics + 1, 3, nodes) of the forces on ``chosen`` points, at the section's nodes."""
-        influence = self.grid.influence
-        nodes, _ = influence.source
-        placed = np.zeros((*waves.shape[:2], len(influence.tread.nodes)), dtype=complex)
-        placed[:, :, nodes[chosen]] = waves[:, :, chosen]
-        return placed
+        if self.antisymmetric is None:
+            return (self.amplitudes,)
+        odd = section_motion(*self.antisymmetric)
+        return self.amplitudes + odd, self.amplitudes - odd
 
     def strains(self, angles: Array) -> tuple[Array, ...]:
         """(6, n_elements, n_points, n_angles) strains of each of `sides` at angles, rad; order rr, zz, tt, rz, rt, zt,
         engineering shears."""
-        elements = self.grid.influence.tread.harmonics.elements
-        turn = np.exp(1j * np.multiply.outer(np.arange(self.grid.harmonics + 1), np.asarray(angles)))
-        waves = np.stack([turn] * 4 + [-1j * turn] * 2)
-        fields = []
-        for side in self.sides:
-            amplitudes = [elements.strain(n, u.real) + 1j * elements.strain(n, u.imag) for n, u in enumerate(side)]
-            fields.append(np.einsum("ncep,cnt->cept", np.stack(amplitudes), waves, optimize=True).real)
-        return tuple(fields)
+        elements, waves = self.tread.harmonics.elements, strain_waves(self.harmonics, angles)
+        fields = [strain_amplitudes(elements, side) for side in self.sides]
+        return tuple(np.einsum("ncep,cnt->cept", field, waves, optimize=True).real for field in fields)

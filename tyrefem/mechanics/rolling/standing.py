@@ -149,7 +149,7 @@ class StandingTyre(Brief):
         """Region -> amplitude at which it stores as much as its points under forces (k, 3), N."""
         grid = self.rolled.grid.under(self._points(amplitudes))
         vectors = np.einsum("kax,ka->kx", self.rolled.axes, forces).reshape(len(grid.angles), -1, 3)
-        fields = SectionFields(grid, np.einsum("jpx,jcx->jpc", vectors, grid.wheel_axes))
+        fields = SectionFields.of(grid, np.einsum("jpx,jcx->jpc", vectors, grid.wheel_axes))
         one_side = np.pi * np.linspace(0, 1, ANGLES + 1) ** 2
         angles = np.concatenate([-one_side[:0:-1], one_side])
         elements = grid.influence.tread.harmonics.elements
