@@ -94,7 +94,7 @@ def test_half_and_full_sections_are_the_same_tyre(leaning: RollingWheel) -> None
     distance, nearest = cKDTree(half.displacements[1]).query(full.displacements[1])
     assert distance.max() < 1e-5
     assert half.point_data["pressure_Pa"][nearest] == pytest.approx(full.point_data["pressure_Pa"], rel=5e-3, abs=5e3)
-    assert half.strain_energy.sum() == pytest.approx(full.strain_energy.sum(), rel=1e-4)
+    assert half.strain_energy.sum() == pytest.approx(full.strain_energy.sum(), rel=1e-3)
 
 
 def test_a_warm_tyre_loses_less_and_has_its_temperature(leaning: RollingWheel, tmp_path: Path) -> None:
