@@ -13,6 +13,7 @@ from tyrefem.mechanics.rolling import roll as rolls
 from tyrefem.mechanics.rolling import slip_curve as slip_curves
 
 if TYPE_CHECKING:
+    from tyrefem.reports.revolved_rolling import Temperature
     from tyrefem.wear.ring_wear import RingWear
 
 
@@ -78,7 +79,7 @@ class RollingWheel(rolls.RolledStudy):
         write_files(self, Path(folder), pictures=pictures, vtk=vtk)
         return Path(folder)
 
-    def to_vtk(self, folder: str | Path, temperature: Any = None) -> Path:
+    def to_vtk(self, folder: str | Path, temperature: Temperature | None = None) -> Path:
         """Write the whole rolling tyre, ``tyre.vtu``, and its footprint, ``contact.vtu``; return the path of the first.
 
         ``temperature``: of the loss, degC: a number, or ``f(places)`` like `Result.temperature_field`; by default that
