@@ -1,0 +1,102 @@
+"""Build the documentation as a site: `python site/build.py`, then open site/_build/html/index.html.
+
+The pages of `docs/` stay where they are. They are copied beside the pages of this folder into ``site/_build/source``,
+in the places that they have in the repository, so that their links hold as on a code host. Sphinx makes the site of
+that. Examples and verification cases run while the site is built. Every warning is an error.
+
+    python site/build.py                 # all of it; only what changed runs again
+    python site/build.py --no-run        # examples are shown, not run
+    python site/build.py --links         # only checks links to other servers, which it must reach
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import re
+import shutil
+import sys
+from pathlib import Path
+
+SITE = Path(__file__).resolve().parent
+ROOT = SITE.parent
+BUILD = SITE / "_build"
+#: Pages of the repository beside those of `docs/`.
+PAGES = ("CHANGELOG.md", "CONTRIBUTING.md", "tests/README.md", "docs/**/*.md", "studies/*/README.md")
+#: Folders of the site that Sphinx reads as a copy.
+FOLDERS = ("howto", "reference", "about", "static", "templates")
+LINK = re.compile(r"\]\(([^)\s#:]+)(?:#[^)\s]*)?\)")
+
+
+def pages_of_repository(root: Path = ROOT) -> list[Path]:
+    """The pages that are shown as they are, sorted."""
+    return sorted(path for pattern in PAGES for path in root.glob(pattern))
+
+
+def linked_files(page: Path, folder: Path) -> set[Path]:
+    """The files of the repository that a page in ``folder`` shows or links to, other pages among them."""
+    targets = LINK.findall(page.read_text(encoding="utf-8"))
+    files = {file for target in targets if (file := (folder / target).resolve()).is_file()}
+    return {file for file in files if file.is_relative_to(ROOT)}
+
+
+def sources() -> dict[Path, Path]:
+    """Every file of the site: place in the source folder -> file."""
+    pages = pages_of_repository()
+    # conf.py, the gallery and the verification book are read where they are.
+    places = [SITE.glob("*.md"), *((SITE / name).rglob("*") for name in FOLDERS)]
+    placed = {file.relative_to(SITE): file for files in places for file in files if file.is_file()}
+    # A page of the site lies in the source folder as if this folder were the repository.
+    linked = [linked_files(file, (ROOT / place).parent) for place, file in placed.items() if file.suffix == ".md"]
+    linked += [linked_files(page, page.parent) for page in pages]
+    files = {*pages, *(file for each in linked for file in each if not file.is_relative_to(SITE))}
+    return placed | {file.relative_to(ROOT): file for file in files}
+
+
+def assemble(source: Path) -> None:
+    """Copy what changed into the source folder, and remove what is gone. Files that Sphinx makes there stay."""
+    record = source.parent / "copied.txt"
+    before = set(record.read_text(encoding="utf-8").splitlines()) if record.is_file() else set()
+    placed = sources()
+    for place, file in placed.items():
+        copy = source / place
+        if not copy.is_file() or copy.read_bytes() != file.read_bytes():
+            copy.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(file, copy)
+    for place in before - {place.as_posix() for place in placed}:
+        (source / place).unlink(missing_ok=True)
+    record.write_text("".join(f"{place.as_posix()}\n" for place in sorted(placed)), encoding="utf-8")
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Build the site, or check its links to other servers."""
+    parser = argparse.ArgumentParser(description="Build the documentation as a site.")
+    parser.add_argument("--no-run", action="store_true", help="show examples without running them")
+    parser.add_argument("--links", action="store_true", help="only check links to other servers; the network is needed")
+    parser.add_argument("--clean", action="store_true", help="forget earlier builds")
+    given = parser.parse_args(arguments)
+    try:
+        from sphinx.cmd.build import build_main
+    except ImportError:
+        print("The site needs Sphinx: pip install -e '.[docs]'", file=sys.stderr)
+        return 2
+    if given.clean:
+        shutil.rmtree(BUILD, ignore_errors=True)
+    source = BUILD / "source"
+    source.mkdir(parents=True, exist_ok=True)
+    assemble(source)
+    run = not (given.no_run or given.links)
+    os.environ["TYREFEM_SITE_RESULTS"] = str(BUILD / "cases")
+    builder = "linkcheck" if given.links else "html"
+    # Examples run in this process: they find this checkout, whatever is installed.
+    sys.path.insert(0, str(ROOT))
+    flags = ["-b", builder, "-c", str(SITE), "-d", str(BUILD / "doctrees"), "-n", "-W", "--keep-going", "-q"]
+    flags += [] if run else ["-D", "plot_gallery=0"]
+    code = build_main([*flags, str(source), str(BUILD / builder)])
+    if code == 0:
+        print(f"{BUILD / builder / 'index.html'}" if builder == "html" else "Every link to another server answers.")
+    return int(code)
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
