@@ -214,6 +214,6 @@ def test_the_reference_in_the_documentation_is_a_sweep_file(tmp_path: Path) -> N
     reference = text.split("## The sweep file")[1].split("```toml\n")[1].split("```")[0]
     (tmp_path / "sweep.toml").write_text(reference, encoding="utf-8")
     wanted = loaded(str(tmp_path))
-    assert len(wanted.plan.variants) == 4 * 5 * 2 * 3
+    assert len(wanted.plan.variants) == 4 * 5 * 2 * 3 * 2
     assert [question.key for question in wanted.further] == ["tornado", "envelope"]
     assert "an envelope of 4 loads and pressures" in wanted.words

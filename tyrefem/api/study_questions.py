@@ -164,6 +164,7 @@ class StudyQuestions(studies.StudyData):
         self,
         vary: Mapping[str, Any] | None = None,
         *,
+        link: Mapping[str, Sequence[str]] | None = None,
         sample: str | None = None,
         count: int | None = None,
         seed: int | None = None,
@@ -193,6 +194,7 @@ class StudyQuestions(studies.StudyData):
         Parameters
         ----------
         vary : dotted name -> tuple (from, to) or (from, to, levels), list of values, or entry of a sweep file.
+        link : name -> dotted names that vary together under this name: ``{"gauges": ["section.thickness_scale.*"]}``.
         sample : grid, latin, sobol, saltelli or list, with ``count``, ``seed`` or ``cases``. case : of a campaign.
         change : values changed in every variant. uncertain : also vary all uncertain numbers, standard deviations.
         limits : answer -> its limits. time_to : temperature whose time is an answer. answers : in tables and pictures.
@@ -213,9 +215,9 @@ class StudyQuestions(studies.StudyData):
         from tyrefem.sweep.design import run_design_study
 
         questions = given(
-            sample=sample, count=count, seed=seed, cases=cases, case=case, change=change, uncertain=uncertain,
-            limits=limits, time_to=time_to, answers=answers, pareto=pareto, tornado=tornado, optimise=optimise,
-            envelope=envelope, title=title,
+            link=link, sample=sample, count=count, seed=seed, cases=cases, case=case, change=change,
+            uncertain=uncertain, limits=limits, time_to=time_to, answers=answers, pareto=pareto, tornado=tornado,
+            optimise=optimise, envelope=envelope, title=title,
         )  # fmt: skip
         execution = given(
             scheduler=scheduler, folder=folder, restart=restart, reduced=reduced, tolerance=tolerance,

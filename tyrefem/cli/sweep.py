@@ -51,6 +51,15 @@ def sweep(
             rich_help_panel=VARIANTS,
         ),
     ] = None,
+    link: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--link",
+            metavar="NAME=KEY,KEY",
+            help="A name for numbers that vary together; -KEY takes the negative value. Repeatable.",
+            rich_help_panel=VARIANTS,
+        ),
+    ] = None,
     uncertain: Annotated[
         float | None,
         typer.Option(
@@ -175,7 +184,7 @@ def sweep(
     from tyrefem.variants.execution import Execution
 
     given = questions_of_flags(
-        vary=vary, uncertain=uncertain, sample=sample, count=count, seed=seed, cases=cases, limit=limit,
+        vary=vary, link=link, uncertain=uncertain, sample=sample, count=count, seed=seed, cases=cases, limit=limit,
         time_to=time_to, answer=answer, pareto=pareto, indices=indices, tornado=tornado, tolerance_of=tolerance_of,
         minimise=minimise, maximise=maximise, runs=runs, envelope=envelope, loads=loads, pressures=pressures,
         speeds=speeds,

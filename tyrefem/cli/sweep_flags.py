@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 def questions_of_flags(
     *,
     vary: list[str] | None = None,
+    link: list[str] | None = None,
     uncertain: float | None = None,
     sample: str | None = None,
     count: int | None = None,
@@ -48,6 +49,7 @@ def questions_of_flags(
     tolerances = _once([_tolerance(text) for text in tolerance_of or []], "--tolerance-of")
     given: dict[str, Any] = {
         "vary": _once([varied(text) for text in vary or []], "--vary"),
+        "link": _once([_link(text) for text in link or []], "--link"),
         "uncertain": uncertain,
         "sample": "saltelli" if indices is not None else sample,
         "count": count if indices is None else indices,
@@ -94,6 +96,11 @@ def varied(text: str) -> tuple[str, dict[str, Any]]:
         except ValueError:
             raise InputError(f"'{values}' is not two factors, e.g. x0.8:x1.2", field="--vary") from None
     return key, {"from": _plain(parts[0]), "to": _plain(parts[1]), **levels}
+
+
+def _link(text: str) -> tuple[str, list[str]]:
+    name, keys = _pair(text, "--link", "gauges=section.thickness_scale.*")
+    return name, _listed(keys, "--link")
 
 
 def _once(pairs: list[tuple[str, Any]], flag: str) -> dict[str, Any] | None:

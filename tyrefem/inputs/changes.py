@@ -69,6 +69,15 @@ def _as_table(data: dict[str, Any], parts: list[str]) -> None:
         data["section"] = {}
 
 
+def canonical(data: Mapping[str, Any], key: str) -> str:
+    """The full dotted name: with the table that a short name leaves out.
+
+    >>> canonical({"section": "nasa-22x5.5-8pr"}, "section.crown_radius")
+    'section.parameters.crown_radius'
+    """
+    return ".".join(_parts(data, key))
+
+
 def _parts(data: Mapping[str, Any], key: str) -> list[str]:
     parts = [part.strip().replace("-", "_") if i == 0 else part.strip() for i, part in enumerate(key.split("."))]
     if not all(parts):
@@ -170,6 +179,8 @@ def scaled(value: Any, factor: float, significant: int | None = None) -> Any:
 
     >>> scaled("20 mph", 1.5), scaled("20 mph", 1.23456, significant=3), scaled(0.1, 1.23456, significant=3)
     ('30 mph', '24.7 mph', 0.123)
+    >>> scaled({"unit": "mm", "values": [1.0, 2.0]}, 1.5)
+    {'unit': 'mm', 'values': [1.5, 3.0]}
     >>> scaled([["20 degC", "0.2 W/m/K"], ["80 degC", "0.3 W/m/K"]], 2.0)
     [['20 degC', '0.4 W/m/K'], ['80 degC', '0.6 W/m/K']]
     """
@@ -177,6 +188,8 @@ def scaled(value: Any, factor: float, significant: int | None = None) -> Any:
         raise InputError(f"{value!r} is not a number that can be scaled")
     if isinstance(value, int | float):
         return value * factor if significant is None else float(f"{value * factor:.{significant}g}")
+    if isinstance(value, Mapping) and set(value) == {"unit", "values"}:
+        return {"unit": value["unit"], "values": [scaled(entry, factor, significant) for entry in value["values"]]}
     if isinstance(value, list):
         if value and all(isinstance(row, list) and row for row in value):
             return [[row[0], *scaled(row[1:], factor, significant)] for row in value]

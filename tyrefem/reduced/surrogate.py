@@ -81,7 +81,7 @@ class Surrogate(Brief):
         certificate = self.certificate
         return {
             **self.model._facts(),
-            "varied": [each.key for each in self.varied],
+            "varied": [each.label for each in self.varied],
             "certificate": f"{certificate.worst:.2g} K on {certificate.cases} fresh full runs, "
             f"{certificate.tolerance:g} K wanted",
         }
@@ -110,8 +110,9 @@ def why_outside(study: StudyData, base: StudyData, varied: Sequence[Varied]) -> 
         value = value_at(study.data, number.key, study.folder)
         if not number.contains(value):
             return f"'{number.key}' = {value!r} is outside the box of the reduced model"
-        if not number.together(value, {key: value_at(study.data, key, study.folder) for key, _ in number.also}):
-            return f"'{number.also[0][0]}' does not change with '{number.key}', as the reduced model assumes"
+        beside = number.keys[1:]
+        if not number.together(value, {key: value_at(study.data, key, study.folder) for key in beside}):
+            return f"'{beside[0]}' does not change with '{number.key}', as the reduced model assumes"
     same = changes_at(varied, [0.5] * len(varied))
     study_data, base_data = (all_changed(each.data, same) for each in (study, base))
     for key in dict.fromkeys([*study_data, *base_data]):
@@ -211,7 +212,8 @@ def check_varied(plan: Plan) -> None:
     if not plan.varied:
         raise NotReducibleError("variants from a list span no box for training")
     for number in plan.varied:
-        if number.key.split(".")[0] in ("section", "mesh", "output", "numerics"):
-            raise NotReducibleError(f"'{number.key}' changes the mesh or the numerical precision")
+        for key in number.keys:
+            if key.split(".")[0] in ("section", "mesh", "output", "numerics"):
+                raise NotReducibleError(f"'{key}' changes the mesh or the numerical precision")
     if plan.study.card.mechanics.feedback is not None:
         raise NotReducibleError("strain cycles that follow the temperature")

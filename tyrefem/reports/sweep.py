@@ -105,7 +105,7 @@ def _variants(design: DesignData, swept: Sweep) -> dict[str, Any]:
     errors = {} if certificate is None else dict(certificate.errors)
     wanted = dict.fromkeys((*design.card.answers, *design.card.limits, *COLUMNS))
     columns = [name for name in wanted if name in table]
-    headings = [varied.heading for varied in swept.plan.varied] or [key for key in swept.plan.keys if key in table]
+    headings = [heading for heading in swept.plan.headings if heading in table]
     best = set(design.pareto["variant"]) if design.swept is not None and "hottest_degC" in table else set()
     if design.swept is None and design.optimum is not None and design.optimum.best is not None:
         best = {swept.plan.names[design.optimum.best]}
@@ -173,6 +173,8 @@ def _assumed(design: DesignData) -> list[str]:
         "Every variant is the study with some values changed: the assumptions of its cards and laws hold here too.",
         f"Time integration to {design.study.tolerance:g} K; mesh of {design.study.card.mesh.size * 1e3:g} mm.",
     ]
+    for name, keys in ({} if design.swept is None else design.swept.plan.sampling.get("linked", {})).items():
+        sentences.append(f"Linked: {name} sets {'; '.join(f'{key}: {what}' for key, what in keys.items())}.")
     if design.indices is not None:
         sentences.append("Sobol indices: every number is uniform in its range and independent of the others.")
     if design.tornado is not None:

@@ -201,8 +201,9 @@ class Optimum:
 
     @property
     def where(self) -> str:
-        """`changes` as text, with four digits."""
-        return ", ".join(f"{key} = {_four_digits(value)}" for key, value in self.changes.items())
+        """`changes` as text, with four digits; linked numbers by their name."""
+        values = {} if self.best is None else self.swept.plan.settings(self.best)
+        return ", ".join(f"{key} = {_four_digits(value)}" for key, value in values.items())
 
     @property
     def words(self) -> list[str]:

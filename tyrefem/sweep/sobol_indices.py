@@ -42,7 +42,7 @@ def indices(swept: Sweep, answer: str) -> pd.DataFrame:
     if missing:
         raise InputError(f"{missing} of {len(values)} variants have no '{answer}'; Sobol indices need them all")
     y = np.array(values, dtype=float)
-    names = [varied.key for varied in plan.varied]
+    names = [varied.label for varied in plan.varied]
     if np.ptp(y) == 0:
         nothing = np.zeros(len(names))
         analysis = dict.fromkeys(("S1", "S1_conf", "ST", "ST_conf"), nothing)

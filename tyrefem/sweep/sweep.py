@@ -50,7 +50,7 @@ class Sweep(Brief):
     def _facts(self) -> Mapping[str, Any]:
         reduced = self.reduced
         return {
-            "varied": self.plan.keys,
+            "varied": self.plan.headings,
             "variants": f"{len(self.outcomes)} of {len(self.plan.variants)} finished, {len(self.failed)} failed",
             "answers": self.answers,
             "answered by": f"{len(self.outcomes) - reduced} full runs"
@@ -70,7 +70,7 @@ class Sweep(Brief):
         rows = [self._row(number) for number in sorted(self.outcomes)]
         table = pd.DataFrame(rows)
         if table.empty:
-            return pd.DataFrame(columns=["variant", *self.plan.keys, "feasible", "failure"])
+            return pd.DataFrame(columns=["variant", *self.plan.headings, "feasible", "failure"])
         for name in table.columns:
             if table[name].dtype == object and name not in ("variant", "failure", "by"):
                 numbers = pd.to_numeric(table[name], errors="coerce")

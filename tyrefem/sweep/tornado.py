@@ -17,16 +17,19 @@ from tyrefem.sweep.sweep import Sweep, sweep
 from tyrefem.variants.answer_units import difference_unit, name_of, shown
 from tyrefem.variants.card import SweepCard, TornadoCard
 from tyrefem.variants.execution import Execution
+from tyrefem.variants.links import Links, members
 from tyrefem.variants.outcomes import Failed, answer_of
 from tyrefem.variants.plan import Plan, check_changes
-from tyrefem.variants.varied import DIGITS
+from tyrefem.variants.varied import DIGITS, factored
 
 if TYPE_CHECKING:
     import pandas as pd
 
 
-def tolerances(study: StudyData, only: Mapping[str, float] | None = None) -> tuple[UncertainNumber, ...]:
-    """The uncertain numbers with their relative tolerances as sd.
+def tolerances(
+    study: StudyData, only: Mapping[str, float] | None = None, links: Links | None = None
+) -> tuple[UncertainNumber, ...]:
+    """The uncertain numbers with their relative tolerances as sd; linked numbers are one number.
 
     Default: all numbers that affect answers and for which cards or study state a standard deviation. A card's number is
     the same in all regions that use the card.
@@ -37,7 +40,7 @@ def tolerances(study: StudyData, only: Mapping[str, float] | None = None) -> tup
     """
     uncertain = [number for number in study.uncertain_numbers if not number.idle]
     if only:
-        uncertain = [uncertain_number(study, key, part) for key, part in only.items()]
+        uncertain = [_number(study, key, part, links or {}) for key, part in only.items()]
     if not uncertain:
         raise InputError(
             "no tolerances: neither cards (relative_sd) nor [uncertainty] state any; give --tolerance KEY=5%",
@@ -46,11 +49,25 @@ def tolerances(study: StudyData, only: Mapping[str, float] | None = None) -> tup
     return tuple(uncertain)
 
 
-def tornado_plan(study: StudyData, given: Mapping[str, float] | None = None, time_to: float | None = None) -> Plan:
+def _number(study: StudyData, name: str, tolerance: float, links: Links) -> UncertainNumber:
+    group = members(study, name, links)
+    if not group.linked:
+        return uncertain_number(study, name, tolerance)
+    together = factored(study, group)
+    written = (together.nominal, *(value for _, value in together.also))
+    return UncertainNumber(name, together.keys, written, tolerance, regions=(name, *together.keys))
+
+
+def tornado_plan(
+    study: StudyData,
+    given: Mapping[str, float] | None = None,
+    time_to: float | None = None,
+    links: Links | None = None,
+) -> Plan:
     """Plan of the unchanged study, then each number alone times 1 - tolerance and 1 + tolerance."""
     variants: list[dict[str, Any]] = [{}]
     names = ["as it is"]
-    numbers = tolerances(study, given)
+    numbers = tolerances(study, given, links)
     for number in numbers:
         for sign, word in ((-1, "less"), (1, "more")):
             variants.append(number.changes(1 + sign * number.sd, DIGITS))
@@ -172,7 +189,7 @@ class TornadoQuestion(SweepQuestion):
     place: ClassVar[int] = 1
 
     def __init__(self, study: StudyData, table: TornadoCard, card: SweepCard) -> None:
-        self.plan, self.answers = tornado_plan(study, table.tolerances, card.time_to), card.answers
+        self.plan, self.answers = tornado_plan(study, table.tolerances, card.time_to, card.link), card.answers
 
     @property
     def words(self) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
@@ -131,7 +132,8 @@ class SweepCard(Card):
     study : name or path (relative to the file). case : of a campaign. change : values changed in every variant.
     sample : sampling method; ``count`` of variants (Latin hypercube, Sobol; Saltelli: the base), ``seed``; ``cases``:
         CSV (list). Default: a grid, or only the optimiser's variants with ``[optimise]``.
-    vary : dotted name -> how it varies. uncertain : all uncertain numbers that affect the answers vary too, uniformly
+    vary : dotted name -> how it varies. link : name -> dotted names that vary together: `tyrefem.variants.links`.
+    uncertain : all uncertain numbers that affect the answers vary too, uniformly
         within so many standard deviations; a card's number in all regions that use the card.
     limits : answer -> its limits.
     time_to : temperature; the time at which it is first reached is an answer (``time_to_limit_s``).
@@ -150,6 +152,7 @@ class SweepCard(Card):
     seed: Annotated[int, Field(ge=0)] = 1
     cases: str | None = None
     vary: dict[str, VaryCard] = Field(default_factory=dict)
+    link: dict[str, tuple[Text, ...]] = Field(default_factory=dict)
     uncertain: Annotated[float, Unit("1", gt=0, le=5)] | None = None
     limits: dict[str, LimitCard] = Field(default_factory=dict)
     time_to: Temperature | None = None
@@ -168,6 +171,18 @@ class SweepCard(Card):
         if not isinstance(table, dict):
             return table
         return {key: {"values": value} if isinstance(value, list) else value for key, value in table.items()}
+
+    @field_validator("link", mode="before")
+    @classmethod
+    def _lists(cls, data: Any) -> Any:
+        """Refuse anything but names with lists, e.g. a nested table; a name has no dot, so that it is no number."""
+        for name, entries in data.items() if isinstance(data, dict) else ():
+            if not re.fullmatch(r"[A-Za-z][\w-]{0,59}", str(name)):
+                allowed = "letters, digits, - and _, 60 at most"
+                raise InputError(f"'{name}' is no name of a link; allowed: {allowed}")
+            if not isinstance(entries, list | tuple) or not entries:
+                raise InputError("must be a list of dotted names, e.g. ['section.thickness_scale.*']", field=str(name))
+        return data
 
     @field_validator("change")
     @classmethod

@@ -17,9 +17,10 @@ from tyrefem.mechanics.cycle_schedule import check_cases
 from tyrefem.quantity import written
 from tyrefem.variants.answers import check_answer
 from tyrefem.variants.card import LimitCard, SweepCard, VaryCard
+from tyrefem.variants.links import Links, check_apart, check_links, members
 from tyrefem.variants.samples import check_distinct, drawn, grid, listed, size_of
 from tyrefem.variants.task import Bundle, Task, bundle
-from tyrefem.variants.varied import Varied, uncertain, varied
+from tyrefem.variants.varied import Varied, factor_of, factored, uncertain, varied
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,7 +31,7 @@ class Plan:
     ----------
     study : the study. varied : the varied numbers; empty if the variants come from a list. variants : changes of each.
     names : of the variants. limits : answer -> its limits. time_to : see `answers`. sampling : description of the
-        sample, for the record.
+        sample, for the record. linked : names of a list that set several numbers or give a factor.
     """
 
     study: StudyData
@@ -40,6 +41,7 @@ class Plan:
     limits: Mapping[str, LimitCard]
     time_to: float | None
     sampling: Mapping[str, Any]
+    linked: tuple[Varied, ...] = ()
 
     @functools.cached_property
     def packed(self) -> Bundle:
@@ -63,14 +65,33 @@ class Plan:
 
     def row(self, number: int) -> dict[str, Any]:
         """A variant's name and values, as a row of a table."""
-        by_key, changes = {varied_number.key: varied_number for varied_number in self.varied}, self.variants[number]
-        beside = {key for varied_number in self.varied for key, _ in varied_number.also}
-        shown = {
-            (by_key[key].heading if key in by_key else key): (by_key[key].of(value) if key in by_key else value)
-            for key, value in changes.items()
-            if key not in beside
-        }
-        return {"variant": self.names[number], **shown}
+        return {"variant": self.names[number], **self._shown(self.variants[number], written=False)}
+
+    @property
+    def headings(self) -> list[str]:
+        """Headings of the values in the rows, in order."""
+        if self.varied:
+            return [number.heading for number in self.varied]
+        return list(dict.fromkeys(name for changes in self.variants for name in self._shown(changes, written=False)))
+
+    def settings(self, number: int) -> dict[str, Any]:
+        """A variant's values as written, by the names that vary."""
+        return self._shown(self.variants[number], written=True)
+
+    def _shown(self, changes: Mapping[str, Any], written: bool) -> dict[str, Any]:
+        numbers = (*self.varied, *self.linked)
+        by_key = {each.key: each for each in numbers}
+        beside = {key for each in numbers for key in each.keys[1:]}
+        shown: dict[str, Any] = {}
+        for key, value in changes.items():
+            each = by_key.get(key)
+            if each is None:
+                shown |= {} if key in beside else {key: value}
+            elif written:
+                shown[each.label] = each.setting(value) if each.name else value
+            else:
+                shown[each.heading] = each.of(value)
+        return shown
 
 
 def planned(study: StudyData, card: SweepCard, near: Path | None = None) -> Plan:
@@ -88,22 +109,29 @@ def planned(study: StudyData, card: SweepCard, near: Path | None = None) -> Plan
             table = next(part for part in ("limits", "answers", "pareto") if name in getattr(card, part))
             raise error.within(field=table) from None
     names: Sequence[str]
+    linked: tuple[Varied, ...] = ()
     if card.chosen == "list":
         assert card.cases is not None
         path = (near or Path()) / card.cases
         variants, names = listed(path)
         chosen: tuple[Varied, ...] = ()
         try:
+            check_links(study, card.link, [*_used(card), *(name for changes in variants for name in changes)])
+            variants, linked = _unlinked(study, variants, card.link)
             check_changes(study, [(f"variant '{name}'", part) for name, part in zip(names, variants, strict=True)])
         except InputError as error:
             raise error if error.file else error.within(file=path) from None
     else:
-        chosen = tuple(varied(study, key, part) for key, part in _outer_keys_first(card.vary).items())
+        chosen = _outer_keys_first([varied(study, key, part, card.link) for key, part in card.vary.items()])
+        check_apart([(number.label, number.keys) for number in chosen], study)
+        check_links(study, card.link, _used(card))
         if card.uncertain is not None:
             chosen += _not_varied_otherwise(chosen, uncertain(study, card.uncertain))
         if card.sampled:
             size_of(chosen, card.chosen, card.count)
-        check_changes(study, [("", part.changes(value)) for part in chosen for value in part.ends])
+        ends = [(part, value) for part in chosen for value in part.ends]
+        shown = [f"{part.label} = {part.setting(value) if part.name else repr(value)}" for part, value in ends]
+        check_changes(study, [("", part.changes(value)) for part, value in ends], shown)
         if not card.sampled:
             variants = []
         elif card.chosen == "grid":
@@ -116,10 +144,49 @@ def planned(study: StudyData, card: SweepCard, near: Path | None = None) -> Plan
             check_distinct(variants, names)
     seed = card.seed if card.chosen in ("latin-hypercube", "sobol", "saltelli") else None
     sampling: dict[str, Any] = {"sample": card.chosen if card.sampled else None, "count": len(variants), "seed": seed}
+    together = {part.label: part.settings_of_keys for part in (*chosen, *linked) if part.name}
+    if together:
+        sampling["linked"] = together
     if card.uncertain is not None:
-        also = {part.key: [key for key, _ in part.also] for part in chosen if part.also}
+        also = {part.key: [key for key, _ in part.also] for part in chosen if part.also and not part.name}
         sampling |= {"uncertain": card.uncertain, "also": also, "left_out": left_out(study.uncertain_numbers)}
-    return Plan(study, chosen, tuple(variants), tuple(names), dict(card.limits), card.time_to, sampling)
+    return Plan(study, chosen, tuple(variants), tuple(names), dict(card.limits), card.time_to, sampling, linked)
+
+
+def _used(card: SweepCard) -> list[str]:
+    """The names that vary in a sweep file, apart from those of a list."""
+    return [*card.vary, *(card.tornado.tolerances if card.tornado else ())]
+
+
+def _unlinked(
+    study: StudyData, variants: Sequence[Mapping[str, Any]], links: Links
+) -> tuple[list[dict[str, Any]], tuple[Varied, ...]]:
+    """The variants of a list by the study's names, and the names in it that set several numbers or give a factor."""
+    columns = list(dict.fromkeys(name for changes in variants for name in changes))
+    groups = {name: members(study, name, links) for name in columns}
+    check_apart([(name, group.keys) for name, group in groups.items()], study)
+    numbers: dict[str, Varied] = {}
+    for name, group in groups.items():
+        values = [changes[name] for changes in variants if name in changes]
+        factors = [factor_of(value) for value in values]
+        if any(factor is not None for factor in factors):
+            if None in factors:
+                raise InputError("is a factor in some rows and a value in others", field=name)
+            numbers[name] = factored(study, group)
+        elif group.linked:
+            (key, _), *same = group.pairs
+            numbers[name] = Varied(key, values=tuple(dict.fromkeys(values)), same=tuple(same), name=name)
+    plain = []
+    for changes in variants:
+        laid: dict[str, Any] = {}
+        for name, value in changes.items():
+            number, factor = numbers.get(name), factor_of(value)
+            if number is None:
+                laid[name] = value
+            else:
+                laid |= number.changes(value if factor is None else number.written(factor))
+        plain.append(laid)
+    return plain, tuple(numbers.values())
 
 
 def _not_varied_otherwise(chosen: Sequence[Varied], numbers: Sequence[Varied]) -> tuple[Varied, ...]:
@@ -129,10 +196,10 @@ def _not_varied_otherwise(chosen: Sequence[Varied], numbers: Sequence[Varied]) -
     ------
     InputError : the card of an uncertain number varies as a whole.
     """
-    named = {number.key for number in chosen}
-    beside = tuple(number for number in numbers if not named & {number.key, *(key for key, _ in number.also)})
+    named = {key for number in chosen for key in number.keys}
+    beside = tuple(number for number in numbers if not named & set(number.keys))
     for number in beside:
-        for key in (number.key, *(key for key, _ in number.also)):
+        for key in number.keys:
             outer = next((name for name in named if key.startswith(f"{name}.")), None)
             if outer is not None:
                 message = f"'{outer}' varies as a whole, so its number '{key}' has no single value to vary about"
@@ -140,17 +207,21 @@ def _not_varied_otherwise(chosen: Sequence[Varied], numbers: Sequence[Varied]) -
     return beside
 
 
-def _outer_keys_first(vary: Mapping[str, VaryCard]) -> dict[str, VaryCard]:
+def _outer_keys_first(numbers: Sequence[Varied]) -> tuple[Varied, ...]:
     """Cards and sections that vary as a whole first, then the numbers within them, so that these are not lost."""
-    within = {key: outer for key in vary for outer in vary if key.startswith(f"{outer}.")}
-    for key, outer in within.items():
-        if vary[key].factor is not None:
+    whole = {key: number for number in numbers for key in number.keys}
+    within = False
+    for number in numbers:
+        outer = next((key for key in whole for inner in number.keys if inner.startswith(f"{key}.")), None)
+        if outer is None:
+            continue
+        within = True
+        if number.nominal is not None:
             raise InputError(
-                f"'{outer}' varies as a whole, so a factor has no meaning here: give values", field=f"vary.{key}"
+                f"'{outer}' varies as a whole, so a factor has no meaning here: give values",
+                field=f"vary.{number.label}",
             )
-    if not within:
-        return dict(vary)
-    return dict(sorted(vary.items(), key=lambda entry: entry[0].count(".")))
+    return tuple(sorted(numbers, key=lambda number: number.key.count(".")) if within else numbers)
 
 
 def card_of(study: StudyData, vary: Mapping[str, Any] | None = None, **options: Any) -> SweepCard:
@@ -190,11 +261,16 @@ def _vary(value: Any) -> Any:
     raise InputError(f"must be a list of values or a tuple (from, to), not {value!r:.60}", field="vary")
 
 
-def check_changes(study: StudyData, trials: Sequence[tuple[str, Mapping[str, Any]]]) -> None:
-    """Build the study and load cases of every (name, changes); raise `InputError` that names the first refused."""
-    for name, changes in trials:
+def check_changes(
+    study: StudyData, trials: Sequence[tuple[str, Mapping[str, Any]]], words: Sequence[str] | None = None
+) -> None:
+    """Build the study and load cases of every (name, changes); raise `InputError` that names the first refused.
+
+    ``words``: the changes of every trial as text.
+    """
+    for place, (name, changes) in enumerate(trials):
         try:
             check_cases(study.replace(changes))
         except InputError as error:
-            shown = ", ".join(f"{key} = {value!r}" for key, value in changes.items())
+            shown = words[place] if words else ", ".join(f"{key} = {value!r}" for key, value in changes.items())
             raise InputError(f"{name or 'a variant'} with {shown}: {error.message}", field=error.field) from None

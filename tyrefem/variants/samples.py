@@ -96,7 +96,7 @@ def places(varied: Sequence[Varied], sample: str, count: int, seed: int) -> Arra
 
 def problem(varied: Sequence[Varied]) -> dict[str, Any]:
     """Problem of SALib: names, and the unit cube as bounds; `Varied.at` maps its points to values."""
-    return {"num_vars": len(varied), "names": [number.key for number in varied], "bounds": [[0.0, 1.0]] * len(varied)}
+    return {"num_vars": len(varied), "names": [number.label for number in varied], "bounds": [[0.0, 1.0]] * len(varied)}
 
 
 def drawn(varied: Sequence[Varied], sample: str, count: int, seed: int) -> list[dict[str, Any]]:

@@ -5,15 +5,17 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from tyrefem.errors import InputError
 from tyrefem.inputs.changes import scaled, value_at
+from tyrefem.inputs.name_patterns import number_at
 from tyrefem.quantity import parse
 from tyrefem.variants.card import VaryCard
+from tyrefem.variants.links import Links, Members, members
 
 if TYPE_CHECKING:
     from tyrefem.inputs.study import StudyData
@@ -33,7 +35,8 @@ class Varied:
     values : listed values, as written; empty for a continuous quantity.
     low, high : ends of a continuous range, in ``unit``. log : logarithmic spacing. levels : values in a grid.
     nominal : the study's value; the numbers are factors on it.
-    also : (dotted name, its value) of numbers with the same factor: the card's number in other regions.
+    also : (dotted name, its value) of numbers with the same factor: the card's number in other regions, or of a link.
+    same : (dotted name, its share) of linked numbers with the same value, times a share. name : of the link.
     """
 
     key: str
@@ -45,6 +48,18 @@ class Varied:
     levels: int = 5
     nominal: Any = None
     also: tuple[tuple[str, Any], ...] = ()
+    same: tuple[tuple[str, float], ...] = ()
+    name: str = ""
+
+    @property
+    def label(self) -> str:
+        """The name in tables and sentences: of the link, or the dotted name."""
+        return self.name or self.key
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """All dotted names that it sets; the first is `key`."""
+        return (self.key, *(key for key, _ in self.also), *(key for key, _ in self.same))
 
     def changes(self, value: Any) -> dict[str, Any]:
         """Dotted name -> value, for a value as in a study file.
@@ -52,14 +67,21 @@ class Varied:
         >>> ply = Varied("materials.ply.k", low=0.5, high=1.5, nominal="2 W", also=(("materials.wrap.k", "2 W"),))
         >>> ply.changes(ply.at(1.0))
         {'materials.ply.k': '3 W', 'materials.wrap.k': '3 W'}
+        >>> belts = Varied("belt-1.angle", "deg", low=20.0, high=28.0, same=(("belt-2.angle", -1.0),), name="angle")
+        >>> belts.changes(belts.at(0.5))
+        {'belt-1.angle': '24 deg', 'belt-2.angle': '-24 deg'}
         """
+        if self.same:
+            return {self.key: value, **{key: _times(value, share) for key, share in self.same}}
         if not self.also:
             return {self.key: value}
         factor = _ratio(value, self.nominal)
         return {self.key: value, **{key: scaled(nominal_value, factor, DIGITS) for key, nominal_value in self.also}}
 
     def together(self, value: Any, others: Mapping[str, Any]) -> bool:
-        """Do the names of ``also`` have the same factor as this value?"""
+        """Do the names of ``also`` have the same factor as this value, those of ``same`` their share of it?"""
+        if any(not _alike(others[key], _times(value, share)) for key, share in self.same):
+            return False
         factor = _ratio(value, self.nominal) if self.also else 1.0
         return all(
             math.isclose(_ratio(others[key], nominal_value), factor, rel_tol=1e-6) for key, nominal_value in self.also
@@ -69,7 +91,19 @@ class Varied:
     def heading(self) -> str:
         """Heading of a table's column: ``drive.speed [mph]``; for a factor ``NAME [x]``."""
         unit = self.unit or ("x" if self.nominal is not None else "")
-        return f"{self.key} [{unit}]" if unit else self.key
+        return f"{self.label} [{unit}]" if unit else self.label
+
+    @property
+    def settings_of_keys(self) -> dict[str, str]:
+        """Dotted name -> what it gets: its share of the value, or its own value times the factor."""
+        shares = {self.key: 1.0, **dict(self.same)}
+        if self.nominal is not None:
+            return dict.fromkeys(self.keys, "its value x factor")
+        return {key: "the value" if share == 1.0 else f"{share:g} x the value" for key, share in shares.items()}
+
+    def setting(self, value: Any) -> str:
+        """A written value as text; the factor of linked numbers."""
+        return f"{self.of(value):.{DIGITS}g} x" if self.name and self.nominal is not None else str(value)
 
     def number(self, place: float) -> float:
         """The number at a point of [0, 1] of a continuous range, in `unit`."""
@@ -137,29 +171,54 @@ class Varied:
         return list(self.values) or [self.at(0.0), self.at(1.0)]
 
 
-def varied(study: StudyData, key: str, card: VaryCard) -> Varied:
-    """A varied quantity of a study.
+def varied(study: StudyData, key: str, card: VaryCard, links: Links | None = None) -> Varied:
+    """A varied quantity of a study; ``links``: names that stand for several numbers.
 
     Raises
     ------
     InputError : the study has no such number, the ends have different units, or a logarithmic range includes zero.
     """
     try:
-        if card.values is not None:
-            return _listed(key, card.values)
+        group = members(study, key, links or {})
         if card.factor is not None:
-            nominal = value_at(study.data, key, study.folder)
-            scaled(nominal, 1.0)
-            return Varied(key, "", (), *card.factor, log=card.scale == "log", levels=card.levels, nominal=nominal)
-        (low, unit), (high, other) = _amount(card.low), _amount(card.high)
-        if unit != other:
-            raise InputError(f"'from' is in '{unit}' and 'to' in '{other}'; write both in the same unit")
-        if not low < high:
-            raise InputError(f"'from' ({low:g}) must be below 'to' ({high:g})")
-        if card.scale == "log" and low <= 0:
-            raise InputError(f"a logarithmic range must be positive; 'from' is {low:g}")
+            by_factor = factored(study, group)
+            return replace(
+                by_factor, low=card.factor[0], high=card.factor[1], log=card.scale == "log", levels=card.levels
+            )
+        return replace(_by_value(group.pairs[0][0], card), same=group.pairs[1:], name=key if group.linked else "")
     except InputError as error:
-        raise error if error.field == key else error.within(field=f"vary.{key}") from None
+        if error.field == key or (error.field or "").startswith("link"):
+            raise
+        words = f"{error.field}: {error.message}" if error.field else error.message
+        raise InputError(words, field=f"vary.{key}", file=error.file) from None
+
+
+def factored(study: StudyData, group: Members) -> Varied:
+    """The numbers of a name, all times one factor on their values in the study.
+
+    Raises
+    ------
+    InputError : a number is not in the study or its cards, or is zero.
+    """
+    values = [number_at(study.data, key, study.folder) for key in group.keys]
+    for key, value in zip(group.keys, values, strict=True):
+        scaled(value, 1.0)
+        if not _first(value):
+            raise InputError(f"is {value!r}: a factor does not change it; give values", field=key)
+    others = tuple(zip(group.keys[1:], values[1:], strict=True))
+    return Varied(group.keys[0], nominal=values[0], also=others, name=group.name if group.linked else "")
+
+
+def _by_value(key: str, card: VaryCard) -> Varied:
+    if card.values is not None:
+        return _listed(key, card.values)
+    (low, unit), (high, other) = _amount(card.low), _amount(card.high)
+    if unit != other:
+        raise InputError(f"'from' is in '{unit}' and 'to' in '{other}'; write both in the same unit")
+    if not low < high:
+        raise InputError(f"'from' ({low:g}) must be below 'to' ({high:g})")
+    if card.scale == "log" and low <= 0:
+        raise InputError(f"a logarithmic range must be positive; 'from' is {low:g}")
     return Varied(key, unit, (), low, high, card.scale == "log", card.levels)
 
 
@@ -229,10 +288,44 @@ def _amount(value: Any) -> tuple[float, str]:
 
 
 def _ratio(value: Any, nominal: Any) -> float:
+    """The factor of a written value on a nominal value; of tables, by their first number that is not zero."""
+    number = _first(nominal)
+    return _first(value) / number if number else math.nan
+
+
+def _first(value: Any) -> float:
+    """The number of a written value; of a table the first that is not zero, without its first column."""
+    if isinstance(value, Mapping):
+        value = value["values"]
     if isinstance(value, list):
-        value, nominal = value[-1], nominal[-1]
-        return _ratio(value, nominal)
-    return _amount(value)[0] / _amount(nominal)[0]
+        numbers = (_first(entry[1:] if isinstance(entry, list) else entry) for entry in value)
+        return next((number for number in numbers if number), 0.0)
+    return _amount(value)[0]
+
+
+def factor_of(value: Any) -> float | None:
+    """The factor of a cell of a list, ``1.1 x`` under a heading ``NAME [x]``; None for other values.
+
+    >>> factor_of("1.1 x"), factor_of("1.1 mm")
+    (1.1, None)
+    """
+    match = _AMOUNT.match(value) if isinstance(value, str) else None
+    return float(match[1]) if match is not None and match[2] == "x" else None
+
+
+def _times(value: Any, share: float) -> Any:
+    return value if share == 1.0 else scaled(value, share, DIGITS)
+
+
+def _alike(value: Any, other: Any) -> bool:
+    """Are two written values equal, also in different units?"""
+    if value == other:
+        return True
+    try:
+        (number, unit), expected = _amount(other), value
+        return math.isclose(parse(expected, unit or "1"), number, rel_tol=1e-6, abs_tol=1e-12)
+    except InputError:
+        return False
 
 
 def scaled_value(study: StudyData, key: str, factor: float, digits: int = DIGITS) -> Any:
