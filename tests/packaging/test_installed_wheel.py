@@ -69,7 +69,9 @@ def test_wheel_holds_every_module_template_and_card(built: dict[str, Path]) -> N
     }
     assert "tyrefem/py.typed" in package
     assert {f"tyrefem/shipped/studies/{STUDY}/study.toml", "tyrefem/shipped/studies/nasa-campaign/cases.csv"} <= cards
-    assert package | cards <= names
+    schemas = {f"tyrefem/shipped/schemas/{file.name}" for file in (CHECKOUT / "schemas").glob("*.json")}
+    assert schemas
+    assert package | cards | schemas <= names
 
 
 def test_wheel_holds_nothing_else(built: dict[str, Path]) -> None:

@@ -14,7 +14,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, get_args
 
-from pydantic import GetCoreSchemaHandler
+from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import CoreSchema, core_schema
 
 from tyrefem.cards import Card
@@ -81,3 +81,16 @@ class LawOf:
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         return core_schema.no_info_plain_validator_function(self)
+
+    def __get_pydantic_json_schema__(self, core: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        """A table of one of the side's laws, or a law's name; a table without a law has the default law."""
+        known = dict(sorted(laws(self.side).items()))
+        tables = []
+        for name, law in known.items():
+            reference = handler(law.__pydantic_core_schema__)
+            table = handler.resolve_ref_schema(reference)
+            needed = [key for key in table.get("required", []) if key != "law" or name != self.default]
+            table["required"] = needed
+            tables.append(reference)
+        names = {"type": "string", "enum": list(known)}
+        return {"anyOf": [names, {"type": "object", "properties": {"law": names}, "oneOf": tables}]}

@@ -7,13 +7,14 @@ from abc import abstractmethod
 from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
-from pydantic import model_validator
+from pydantic import WithJsonSchema, model_validator
 
 from tyrefem.boundaries import CAL, Law
 from tyrefem.cards import FilmCoefficient
 from tyrefem.cards.plausible import AIR_FILM
 from tyrefem.errors import InputError, InputWarning
 from tyrefem.quantity import Unit
+from tyrefem.quantity.pattern import row_schema
 
 
 class OutsideAirLaw(Law):
@@ -53,7 +54,7 @@ class AirFilmTable(OutsideAirLaw):
     """Rows ``[speed, film]``; linear between rows, constant beyond the ends."""
 
     law: Literal["table"]
-    table: list[list[Any]]
+    table: Annotated[list[list[Any]], WithJsonSchema(row_schema("m/s", "W/m**2/K"))]
 
     @model_validator(mode="after")
     def _rising(self) -> AirFilmTable:

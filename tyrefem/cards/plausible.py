@@ -7,8 +7,13 @@ place of a density. Zero, where a card allows it, means absent and gives no warn
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 from tyrefem.errors import InputWarning
+
+if TYPE_CHECKING:
+    from pydantic import GetJsonSchemaHandler
+    from pydantic_core import CoreSchema
 
 
 @dataclass(frozen=True)
@@ -23,6 +28,9 @@ class Plausible:
     high: float
     unit: str
     source: str
+
+    def __get_pydantic_json_schema__(self, core: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        return {**handler(core), "x-likely": {"low": self.low, "high": self.high, "source": self.source}}
 
     def warning(self, value: float, field: str) -> InputWarning | None:
         """The warning for a value in SI, if it is outside the range."""

@@ -38,6 +38,7 @@ def new(
     from tyrefem import library
     from tyrefem.output import atomic_path, place_of_output
     from tyrefem.output.file import results_file
+    from tyrefem.schemas.line import schema_line, without_line
     from tyrefem.sizes import looks_like_size
 
     if kind not in DEFAULTS:
@@ -70,8 +71,9 @@ def new(
         for place, file in files.items():
             with atomic_path(place) as temporary:
                 shutil.copyfile(file, temporary)
-                if place == target and first_line:
-                    temporary.write_text(first_line + file.read_text(encoding="utf-8-sig"), encoding="utf-8")
+                if place == target:
+                    text = without_line(file.read_text(encoding="utf-8-sig"))
+                    temporary.write_text(schema_line(kind, target) + first_line + text, encoding="utf-8")
     typer.echo(f"{target} written, a copy of {source.parent.name if kind == 'study' else source.stem}")
     if note:
         typer.echo(f"note: {note}")

@@ -28,6 +28,7 @@ def new_size(kind: str, size: str, numbers: Mapping[str, Any], out: Path | None,
     from tyrefem.geometry import load
     from tyrefem.output import atomic_path, place_of_output
     from tyrefem.output.file import results_file
+    from tyrefem.schemas.line import schema_line
     from tyrefem.sizes import drawn_of
     from tyrefem.sizes.section import NUMBERS
     from tyrefem.sizes.text import section_text, study_text
@@ -55,7 +56,7 @@ def new_size(kind: str, size: str, numbers: Mapping[str, Any], out: Path | None,
     command = f"tyrefem new {kind} {shlex.quote(size)} {options}".rstrip()
     text = section_text(drawn, command) if kind == "section" else study_text(drawn, reference, SPEED)
     with results_file(target, (".toml",), force=force), atomic_path(target) as temporary:
-        temporary.write_text(text, encoding="utf-8")
+        temporary.write_text(schema_line(kind, target) + text, encoding="utf-8")
     for warning in section.warnings:
         typer.echo(f"warning: {warning}", err=True)
     guesses = sum("estimate" in number.source for number in drawn.rules)

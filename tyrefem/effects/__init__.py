@@ -18,7 +18,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from pydantic import GetCoreSchemaHandler
+from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import CoreSchema, core_schema
 
 from tyrefem.cache import Cache
@@ -143,3 +143,17 @@ class EffectOf:
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         return core_schema.no_info_plain_validator_function(self)
+
+    def __get_pydantic_json_schema__(self, core: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        """A table with the name of an effect and the effect's keys."""
+        known = catalogue()
+        tables = []
+        for name, effect in known.items():
+            reference = handler(effect.__pydantic_core_schema__)
+            table = handler.resolve_ref_schema(reference)
+            sentence = {"const": name, "description": f"{effect.sentence} Source: {effect.source}."}
+            table["properties"] = {"name": sentence, **table["properties"]}
+            table["required"] = list(dict.fromkeys(["name", *table.get("required", [])]))
+            tables.append(reference)
+        names = {"type": "string", "enum": list(known)}
+        return {"type": "object", "required": ["name"], "properties": {"name": names}, "oneOf": tables}

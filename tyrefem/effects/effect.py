@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BeforeValidator, Field, GetCoreSchemaHandler
+from pydantic import BeforeValidator, Field, GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import CoreSchema, core_schema
 
 from tyrefem.cards import Card, Text
@@ -81,9 +81,21 @@ class Prior:
         return self.null if self.amplitude or self.start is None else self.start
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.no_info_plain_validator_function(self._read)
+
+    @property
+    def _read(self) -> Unit:
         # Rounding must not refuse "40 delta_degC/hour" at a bound of 40/3600.
         low, high = self.low - 1e-9 * abs(self.low), self.high + 1e-9 * abs(self.high)
-        return core_schema.no_info_plain_validator_function(Unit(self.unit, ge=low, le=high))
+        return Unit(self.unit, ge=low, le=high)
+
+    def __get_pydantic_json_schema__(self, core: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        meaning = f"{self.meaning[:1].upper()}{self.meaning[1:]}."
+        return {
+            **self._read.schema(),
+            "description": meaning if self.amplitude else f"{meaning} Start of a fit: {self.text(self.start or 0.0)}.",
+            "x-quantity": {"unit": self.unit, "ge": self.low, "le": self.high, "written": self.written},
+        }
 
 
 @dataclass(frozen=True)

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
 from tyrefem.cards import Card, PositiveLength, Text
 from tyrefem.errors import InputError, nearest
 from tyrefem.quantity import Unit, parse
+from tyrefem.quantity.pattern import NAMES, quantity_schema, row_schema
 
 MARKS = ("shoulder", "bead_start", "rim_start")
 
@@ -53,9 +54,25 @@ def _end(value: Any) -> float | str:
     return length
 
 
-Lengths = Annotated[tuple[float, ...], BeforeValidator(_lengths)]
-Points = Annotated[tuple[tuple[float, float], ...], BeforeValidator(_points)]
-End = Annotated[float | str, BeforeValidator(_end)]
+def _in_a_unit(values: dict[str, Any]) -> dict[str, Any]:
+    """JSON schema of numbers with their unit beside them."""
+    unit = {"type": "string", "enum": NAMES["length"].split(), "description": "Unit of all the numbers."}
+    numbers = {"type": "array", "items": values, "minItems": 1, "description": "The numbers, without their unit."}
+    return {
+        "type": "object",
+        "properties": {"unit": unit, "values": numbers},
+        "required": ["unit", "values"],
+        "additionalProperties": False,
+    }
+
+
+_PAIR = {"type": "array", "items": {"type": "number"}, "minItems": 2, "maxItems": 2}
+_LENGTHS = {"anyOf": [_in_a_unit({"type": "number"}), {"type": "array", "items": quantity_schema("m"), "minItems": 1}]}
+_POINTS = {"anyOf": [_in_a_unit(_PAIR), row_schema("m", "m")]}
+_ENDS = {"anyOf": [{"type": "string", "enum": list(MARKS)}, quantity_schema("m")]}
+Lengths = Annotated[tuple[float, ...], BeforeValidator(_lengths), WithJsonSchema(_LENGTHS)]
+Points = Annotated[tuple[tuple[float, float], ...], BeforeValidator(_points), WithJsonSchema(_POINTS)]
+End = Annotated[float | str, BeforeValidator(_end), WithJsonSchema(_ENDS)]
 Fraction = Annotated[float, Unit("1", gt=0, lt=2)]
 Scale = Annotated[float, Unit("1", gt=0)]
 

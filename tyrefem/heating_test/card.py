@@ -10,7 +10,8 @@ from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from pydantic import Field, model_validator
+from pydantic import Field, GetJsonSchemaHandler, model_validator
+from pydantic_core import CoreSchema
 
 from tyrefem import library
 from tyrefem.cards import Card, PositiveLength, Temperature, Text, read_toml
@@ -34,6 +35,13 @@ class Guess(Card):
     relative_sd: Annotated[float, Unit("1", gt=0, le=2)] = 0.5
     slope: Annotated[float, Unit("1/delta_degC", ge=-0.02, le=0.02)] = 0.0
     source: Text
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, core: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        table = handler.resolve_ref_schema(handler(core))
+        likely = {"low": cls.LIKELY.low, "high": cls.LIKELY.high, "source": cls.LIKELY.source}
+        table["properties"]["value"] |= {**Unit(cls.UNIT, gt=0).schema(), "x-likely": likely}
+        return table
 
     @model_validator(mode="before")
     @classmethod

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar
 
-from pydantic import GetCoreSchemaHandler, model_validator
+from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler, model_validator
 from pydantic_core import CoreSchema, core_schema
 
 from tyrefem.cards import Card, Temperature, Text
@@ -44,6 +44,15 @@ class RampOf:
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         return core_schema.no_info_plain_validator_function(self)
+
+    def __get_pydantic_json_schema__(self, core: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        number = self.unit.schema()
+        ends = {"from": "Value at the start of the phase.", "to": "Value at its end; linear in time between them."}
+        keys = {name: {**number, "description": words} for name, words in ends.items()}
+        whole = {"type": "object", "properties": keys, "required": list(keys)}
+        ramp = {**whole, "additionalProperties": False, "title": "Ramp, linear in time"}
+        plain = {key: value for key, value in number.items() if not key.startswith("x-")}
+        return {"anyOf": [plain, ramp], "x-quantity": number["x-quantity"], "examples": number["examples"]}
 
 
 #: Fastest wheel speed accepted, m/s: the land-speed record is 341 m/s.

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, ClassVar
 
-from pydantic import model_validator
+from pydantic import GetJsonSchemaHandler, model_validator
+from pydantic_core import CoreSchema
 
 from tyrefem.cards import Card
 from tyrefem.errors import InputError, nearest
@@ -41,6 +42,17 @@ class DriveTable(Card):
         filled = [_filled(defaults, phase, number, len(phases)) for number, phase in enumerate(phases)]
         initial = data.get("initial", _start_of(filled[0].get("ambient", "25 degC")))
         return {"initial": initial, "phases": filled}
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, core: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        """The table as written: every key of a phase, and phases without those keys."""
+        table = handler.resolve_ref_schema(handler(core))
+        whole = handler.resolve_ref_schema(handler(cls.phase_card.__pydantic_core_schema__))
+        phase = {key: value for key, value in whole.items() if key != "required"}
+        phases = {**table["properties"]["phases"], "items": phase, "minItems": 1}
+        table["properties"] = {**phase["properties"], **table["properties"], "phases": phases}
+        table.pop("required", None)
+        return table
 
 
 def _filled(defaults: Mapping[str, Any], phase: Any, number: int, count: int) -> dict[str, Any]:

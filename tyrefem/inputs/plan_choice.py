@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, Any
 
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
 from tyrefem.cards import Card
 from tyrefem.errors import InputError, nearest
 from tyrefem.quantity import Unit, parse
+from tyrefem.quantity.pattern import quantity_schema
 
 #: Quantity of a drive that a plan may vary -> its unit.
 UNITS = {
@@ -62,6 +63,15 @@ def _limits(value: Any) -> Limits:
     return limits
 
 
+def _limits_schema() -> dict[str, Any]:
+    """JSON schema of a table of limits: every quantity of the drive, or of a phase by its name."""
+    pairs = {}
+    for name, unit in UNITS.items():
+        pair = {"type": "array", "items": quantity_schema(unit), "minItems": 2, "maxItems": 2}
+        pairs[rf"^drive\.(.+\.)?{name}$"] = pair
+    return {"type": "object", "patternProperties": pairs, "additionalProperties": False}
+
+
 class PlaceChoice(Card):
     """Place of a further thermocouple: ``s`` along the meridian from the crown, ``depth`` from the inner surface.
 
@@ -90,7 +100,7 @@ class PlanChoice(Card):
     the user's choice. ``runs_most``, ``sensors_most``: largest numbers in a plan. ``drives``: number of drives tried.
     """
 
-    limits: Annotated[Limits, BeforeValidator(_limits)] = Field(default_factory=dict)
+    limits: Annotated[Limits, BeforeValidator(_limits), WithJsonSchema(_limits_schema())] = Field(default_factory=dict)
     sensors: dict[str, PlaceChoice] = Field(default_factory=dict)
     run_cost: Annotated[float, Unit("1", gt=0)] = 1.0
     sensor_cost: Annotated[float, Unit("1", gt=0)] = 0.5

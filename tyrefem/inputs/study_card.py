@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import pairwise
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
 from tyrefem.boundaries import LawOf
 from tyrefem.boundaries.contained_air import ContainedAirLaw
@@ -22,6 +22,7 @@ from tyrefem.inputs.loading import TR_R_64, FootprintLaw, TrR64, VerticalStiffne
 from tyrefem.inputs.plan_choice import PlanChoice
 from tyrefem.inputs.published import Published
 from tyrefem.quantity import Unit
+from tyrefem.quantity.pattern import quantity_schema, row_schema
 
 if TYPE_CHECKING:
     from tyrefem.geometry import Section
@@ -41,6 +42,10 @@ def _rows(value: Any) -> Rows:
     return rows
 
 
+#: Rows in a file.
+_ROWS_SCHEMA = {"anyOf": [quantity_schema("J/m**3", {"ge": 0.0}), row_schema("m", "J/m**3", least=1)]}
+
+
 class GivenEnergy(Card):
     """Strain energy per cycle U, J/m3, of every region at one load and pressure.
 
@@ -52,7 +57,7 @@ class GivenEnergy(Card):
     load: Annotated[float, Unit("N", gt=0)]
     pressure: Annotated[float, Unit("Pa", gt=0)]
     temperature: Temperature | None = None
-    regions: dict[str, Annotated[Rows, BeforeValidator(_rows)]] = Field(min_length=1)
+    regions: dict[str, Annotated[Rows, BeforeValidator(_rows), WithJsonSchema(_ROWS_SCHEMA)]] = Field(min_length=1)
     source: Text
 
     def check_regions(self, section: Section) -> None:

@@ -9,7 +9,8 @@ from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import model_validator
+from pydantic import GetJsonSchemaHandler, WithJsonSchema, model_validator
+from pydantic_core import CoreSchema
 
 from tyrefem.cards import Card, Temperature, Text
 from tyrefem.cards.plausible import (
@@ -33,10 +34,15 @@ from tyrefem.materials.road_friction import RoadFriction
 from tyrefem.materials.strain_dependence import StrainDependence
 from tyrefem.materials.wear import Wear
 from tyrefem.quantity import Unit
+from tyrefem.quantity.pattern import quantity_schema, row_schema
 
 Array = NDArray[np.float64]
 #: From absolute zero to the highest temperature allowed on a card, degC.
 _RUBBER = (-273.15, 2000.0)
+
+
+#: Rows [T, k] or [T, along, across].
+_CONDUCTIVITIES = {"anyOf": [row_schema("degC", "W/m/K"), row_schema("degC", "W/m/K", "W/m/K")]}
 
 
 class Conductivity(Sourced):
@@ -49,7 +55,7 @@ class Conductivity(Sourced):
     value: Annotated[float, Unit("W/m/K", gt=0), CONDUCTIVITY] | None = None
     along: Annotated[float, Unit("W/m/K", gt=0), CONDUCTIVITY] | None = None
     across: Annotated[float, Unit("W/m/K", gt=0), CONDUCTIVITY] | None = None
-    table: list[list[Any]] | None = None
+    table: Annotated[list[list[Any]] | None, WithJsonSchema(_CONDUCTIVITIES)] = None
 
     @model_validator(mode="after")
     def _one_form(self) -> Conductivity:
@@ -113,6 +119,15 @@ class Scalar(Sourced):
         else:
             self._at("value", self.value)
         return self
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, core: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        table = handler.resolve_ref_schema(handler(core))
+        likely = {"low": cls.LIKELY.low, "high": cls.LIKELY.high, "source": cls.LIKELY.source}
+        table["properties"]["value"] |= {**quantity_schema(cls.UNIT, {"gt": 0.0}), "x-likely": likely}
+        table["properties"]["table"].pop("anyOf")
+        table["properties"]["table"] |= row_schema("degC", cls.UNIT)
+        return table
 
     def _at(self, field: str, value: Any) -> float:
         try:
@@ -179,7 +194,7 @@ class LossTangent(Sourced):
     value: Annotated[float, Unit("1", ge=0, le=10), LOSS_TANGENT] | None = None
     at: Temperature = 25.0
     rate: Annotated[float, Unit("1/delta_degC", ge=-0.1, le=0.2)] | None = None
-    table: list[list[Any]] | None = None
+    table: Annotated[list[list[Any]] | None, WithJsonSchema(row_schema("degC", "1"))] = None
     frequency: LossFrequency | None = None
 
     @model_validator(mode="after")

@@ -5,13 +5,14 @@ from __future__ import annotations
 import functools
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field, WithJsonSchema, model_validator
 
 from tyrefem.cards import Card, Temperature, Text
 from tyrefem.errors import InputError
 from tyrefem.materials.loss_tangent import FrequencyTable, Loss, OfTemperature, PowerLaw, Prony, Relative, Shift
 from tyrefem.materials.properties import columns
 from tyrefem.quantity import Unit
+from tyrefem.quantity.pattern import row_schema
 
 Frequency = Annotated[float, Unit("Hz", gt=0, le=1e12)]
 
@@ -60,7 +61,7 @@ class LossFrequencyTable(OfFrequency):
     """m tabulated: rows ``[f, tan delta]``, linear in log f and constant beyond; ``shift`` multiplies f by a_T."""
 
     law: Literal["table"]
-    table: list[list[Any]]
+    table: Annotated[list[list[Any]], WithJsonSchema(row_schema("Hz", "1"))]
     shift: ShiftCard | None = None
 
     @model_validator(mode="after")
@@ -83,7 +84,7 @@ class PronySeries(OfFrequency):
 
     law: Literal["prony"]
     equilibrium: Annotated[float, Unit("Pa", gt=0)]
-    series: list[list[Any]] = Field(min_length=1)
+    series: Annotated[list[list[Any]], WithJsonSchema(row_schema("Pa", "s", least=1))] = Field(min_length=1)
     shift: ShiftCard | None = None
 
     @model_validator(mode="after")

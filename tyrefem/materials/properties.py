@@ -11,12 +11,13 @@ from typing import Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import model_validator
+from pydantic import WithJsonSchema, model_validator
 
 from tyrefem.cards import Card, Temperature, Text
 from tyrefem.cards.plausible import Plausible
 from tyrefem.errors import InputError, InputWarning
 from tyrefem.quantity import Unit
+from tyrefem.quantity.pattern import row_schema
 
 Array = NDArray[np.float64]
 
@@ -101,7 +102,7 @@ class Softening(Sourced):
     law: Literal["exponential", "table"] = "exponential"
     rate: Annotated[float, Unit("1/delta_degC", ge=-0.05, le=0.1)] | None = None
     at: Temperature = 25.0
-    table: list[list[Any]] | None = None
+    table: Annotated[list[list[Any]] | None, WithJsonSchema(row_schema("degC", "1"))] = None
 
     @model_validator(mode="after")
     def _complete(self) -> Softening:

@@ -18,7 +18,7 @@ from tyrefem.errors import InputError
 
 if TYPE_CHECKING:
     import pint
-    from pydantic import GetCoreSchemaHandler
+    from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
     from pydantic_core import CoreSchema
 
 _NUMBER = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*$", re.DOTALL)
@@ -241,6 +241,15 @@ class Unit:
         from pydantic_core import core_schema
 
         return core_schema.no_info_plain_validator_function(self)
+
+    def schema(self) -> dict[str, Any]:
+        """JSON schema of the text in a file."""
+        from tyrefem.quantity.pattern import quantity_schema
+
+        return quantity_schema(self.unit, {"gt": self.gt, "ge": self.ge, "lt": self.lt, "le": self.le})
+
+    def __get_pydantic_json_schema__(self, core: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        return self.schema()
 
 
 @dataclass(frozen=True)

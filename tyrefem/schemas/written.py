@@ -1,0 +1,20 @@
+"""The folder of schemas, written or compared."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from tyrefem.schemas.files import FILES
+from tyrefem.schemas.line import settings_text
+
+
+def texts() -> dict[str, str]:
+    """File name -> text of every schema."""
+    made = {f"{kind}.json": schema() for kind, (_, schema) in FILES.items()}
+    return {name: json.dumps(schema, indent=1, ensure_ascii=False) + "\n" for name, schema in made.items()}
+
+
+def settings(folder: Path) -> str:
+    """The editor's settings in the folder above ``folder``."""
+    return settings_text({kind: patterns for kind, (patterns, _) in FILES.items()}, folder.name)
