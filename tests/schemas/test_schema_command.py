@@ -67,7 +67,7 @@ def test_a_schema_of_somebody_else_is_not_replaced(here: Path, capsys: pytest.Ca
     (here / "schemas").mkdir()
     (here / "schemas/study.json").write_text("{}", encoding="utf-8")
     assert main(["schema"]) == 2
-    assert "was not made by tyrefem" in capsys.readouterr().err
+    assert "study.json" in capsys.readouterr().err
     assert not (here / SETTINGS).exists()
 
 

@@ -8,8 +8,8 @@ import tyrefem as tf
 from tyrefem import library
 from tyrefem.geometry import load
 from tyrefem.mechanics.solid.inflation import inflate
-from tyrefem.sizes import draw_size
 from tyrefem.schemas.line import without_line
+from tyrefem.sizes import draw_size
 from tyrefem.sizes.text import section_text
 
 #: Section file -> its size and the study that has its materials.

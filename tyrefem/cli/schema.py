@@ -17,33 +17,30 @@ def schema(
 ) -> None:
     """Write JSON schemas of studies, sections, materials, sweeps and rigs: editors then complete keys and check them.
 
-    Your own effects and cards are in them. Taplo and VS Code read .taplo.toml, written beside the folder.
+    Your own effects and cards are in them. Taplo and VS Code read .taplo.toml, written in this folder.
     """
-    from tyrefem.output import atomic_path
-    from tyrefem.output.file import made_by_this_tool, results_file
+    from tyrefem.output import atomic_path, write_json
+    from tyrefem.output.file import made_by_this_tool
+    from tyrefem.output.folder import results_folder
     from tyrefem.schemas.line import BEGINS, SETTINGS
     from tyrefem.schemas.written import settings, texts
 
-    folder = Path(os.path.abspath(out))
-    place = folder.parent / SETTINGS
-    kept = os.path.lexists(place) and not force and not made_by_this_tool(place)
     made = texts()
-    files = [folder / name for name in made]
-    with results_file(files[0], (".json",), also=[*files[1:], *([] if kept else [place])], force=force):
-        for file, text in zip(files, made.values(), strict=True):
-            with atomic_path(file) as temporary:
+    with results_folder(out, "schema", [*made], force=force) as folder:
+        for name, text in made.items():
+            with atomic_path(folder / name) as temporary:
                 temporary.write_text(text, encoding="utf-8")
-        if not kept:
-            with atomic_path(place) as temporary:
-                temporary.write_text(settings(folder), encoding="utf-8")
-    typer.echo(f"{len(made)} schemas in {out}: {', '.join(name.removesuffix('.json') for name in made)}")
-    if kept:
-        typer.echo(f"{place} is your own and was kept; these lines in it would tell it the schemas:")
-        typer.echo(settings(folder), nl=False)
+        write_json({"schemas": [*made]}, folder / "summary.json")
+    names = ", ".join(name.removesuffix(".json") for name in made)
+    typer.echo(f"{len(made)} schemas in {out}: {names}")
+    place, rules = Path(SETTINGS), settings(os.path.relpath(out))
+    if os.path.lexists(place) and not force and not made_by_this_tool(place):
+        typer.echo(f"{place} is your own and was kept; these lines in it tell the schemas:")
+        typer.echo(rules, nl=False)
     else:
-        typer.echo(
-            f"{SETTINGS} beside it: Taplo, and VS Code with the extension 'Even Better TOML', complete and check"
-        )
+        with atomic_path(place) as temporary:
+            temporary.write_text(rules, encoding="utf-8")
+        typer.echo(f"{place} here: Taplo, and VS Code with the extension 'Even Better TOML', complete and check")
     typer.echo(f"a single file says its schema in its first line: {BEGINS}{out.as_posix()}/study.json")
 
 

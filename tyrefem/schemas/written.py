@@ -15,6 +15,6 @@ def texts() -> dict[str, str]:
     return {name: json.dumps(schema, indent=1, ensure_ascii=False) + "\n" for name, schema in made.items()}
 
 
-def settings(folder: Path) -> str:
-    """The editor's settings in the folder above ``folder``."""
-    return settings_text({kind: patterns for kind, (patterns, _) in FILES.items()}, folder.name)
+def settings(folder: str) -> str:
+    """The editor's settings; ``folder`` holds the schemas, relative to the settings."""
+    return settings_text({kind: patterns for kind, (patterns, _) in FILES.items()}, Path(folder).as_posix())
