@@ -117,12 +117,14 @@ class Feedback(Card):
 
     ``pressure``: the gauge pressure follows the contained air's temperature, so warming reduces the deflection at
     given load. ``modulus``: moduli follow the ``softening`` of the cards at each region's mean temperature.
+    ``friction``: the coefficient of a tyre that rolls with friction follows the mean temperature of the tread.
     ``knots``: number of strain cycles in every phase of constant load. ``tolerance``: largest difference between the
     temperatures of strain cycles and run. ``iterations``: largest number of runs.
     """
 
     pressure: bool = True
     modulus: bool = True
+    friction: bool = True
     knots: Annotated[int, Field(ge=2, le=200)] = 9
     tolerance: Annotated[float, Unit("delta_degC", gt=0, le=20)] = 0.1
     iterations: Annotated[int, Field(ge=1, le=200)] = 20

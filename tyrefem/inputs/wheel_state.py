@@ -20,6 +20,7 @@ class WheelState:
     slip_angle : rad, positive: the wheel moves to its left. camber : rad, positive: it leans to its left (z > 0).
     slip : longitudinal, positive drives; or torque : N m, positive drives; neither: no torque.
     forward : share of the speed that the tread would have without tyre forces, cos(slip angle) (1 + slip).
+    tread_temperature : degC, of the coefficient of friction; None: the drive's initial one.
     """
 
     slip_angle: float = 0.0
@@ -27,6 +28,7 @@ class WheelState:
     slip: float | None = None
     torque: float | None = None
     forward: float = 1.0
+    tread_temperature: float | None = None
 
 
 def wheel_state(phase: Phase, fraction: float) -> WheelState:
@@ -36,7 +38,7 @@ def wheel_state(phase: Phase, fraction: float) -> WheelState:
     >>> braked = Phase.check({"speed": "10 m/s", "load": "3 kN", "pressure": "2 bar", "duration": "1 s",
     ...     "slip_ratio": "5 %"})
     >>> wheel_state(braked, 0.0)
-    WheelState(slip_angle=0.0, camber=0.0, slip=-0.05, torque=None, forward=0.95)
+    WheelState(slip_angle=0.0, camber=0.0, slip=-0.05, torque=None, forward=0.95, tread_temperature=None)
     """
     motion = motion_in(phase, fraction)
     given = phase.slip_ratio is not None or phase.slip_speed is not None

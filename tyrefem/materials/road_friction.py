@@ -76,6 +76,11 @@ class RoadFriction(Sourced):
         """None: temperatures do not depend on the table."""
         return ()
 
+    @property
+    def follows_temperature(self) -> bool:
+        """True if mu depends on the tread's temperature."""
+        return self.decade is not None
+
     def __call__(self, speed: Array | float, pressure: Array | float, temperature: Array | float) -> Array:
         """mu at sliding speeds, m/s, contact pressures, Pa, and temperatures of the tread, degC."""
         pressure = np.maximum(np.asarray(pressure, dtype=float), 0.1 * self.pressure)

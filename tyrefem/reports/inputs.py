@@ -151,7 +151,7 @@ def mechanics_rows(study: StudyData, cycle: FiniteElements | None = None) -> lis
         else ["load and deflection", "; ".join([str(law.law), *_numbers(law)])],
         *_motion(study, cycle),
         ["loss convention", mechanics.loss_convention],
-        *_feedback(mechanics),
+        *_feedback(mechanics, rolls=study.card.boundaries.sliding.rolls),
     ]
     if energy is not None:
         load = f"{number(energy.load)} N, {number(energy.pressure / 1e3)} kPa"
@@ -186,12 +186,13 @@ def _motion(study: StudyData, cycle: FiniteElements | None) -> list[list[str]]:
     return [["motion of the footprint", motion_words(motion, error)]]
 
 
-def _feedback(mechanics: Mechanics) -> list[list[str]]:
+def _feedback(mechanics: Mechanics, *, rolls: bool) -> list[list[str]]:
     choice = mechanics.feedback
     if choice is None:
         return []
-    acting = [text for on, text in ((choice.pressure, "pressure"), (choice.modulus, "modulus")) if on]
-    return [["feedback of temperature", f"{' and '.join(acting) or 'nothing'}, within {number(choice.tolerance)} K"]]
+    parts = ((choice.pressure, "pressure"), (choice.modulus, "modulus"), (choice.friction and rolls, "friction"))
+    acting = [text for on, text in parts if on]
+    return [["feedback of temperature", f"{', '.join(acting) or 'nothing'}, within {number(choice.tolerance)} K"]]
 
 
 def effect_rows(study: StudyData) -> list[list[str]]:
@@ -295,8 +296,7 @@ SLIDING = {
 ROLLING = {
     "Steady rolling with friction": "Each state of slip, torque, slip angle and camber is steady rolling. "
     "Friction heat of every ring of the tread is its mean over the revolution; the "
-    "effusivities of tread and road divide it. The coefficient of friction does not follow the temperature of the "
-    "run. Wear, water and tread gaps are left out.",
+    "effusivities of tread and road divide it. Wear, water and tread gaps are left out.",
 }
 GIVEN = (
     "The study gives every region's strain energy, proportional to the deflection squared. Temperatures and rolling "
@@ -314,7 +314,8 @@ def assumptions(study: StudyData, estimates: list[str]) -> list[tuple[str, str]]
     mechanics = study.card.mechanics
     drive = study.card.drive
     slip = SLIDING if any(phase.slides for phase in drive.phases) else FREE
-    slip = ROLLING if study.card.boundaries.sliding.rolls else slip
+    if study.card.boundaries.sliding.rolls:
+        slip = {name: f"{text} {_friction_assumption(study)}" for name, text in ROLLING.items()}
     locked = LOCKED if any(drive.locked_since(start) is not None for start in drive.starts) else {}
     always = [*ALWAYS.items()]
     given = mechanics.energy if mechanics.strain == "given" else None
@@ -378,6 +379,17 @@ def assumptions(study: StudyData, estimates: list[str]) -> list[tuple[str, str]]
         f"has not been validated against them. {measured}"
     )
     return [*stated, ("Validation", scan)]
+
+
+def _friction_assumption(study: StudyData) -> str:
+    feedback = study.card.mechanics.feedback
+    if not any(card.friction is not None and card.friction.follows_temperature for card in study.materials.values()):
+        return "The coefficient of friction does not depend on the temperature."
+    if feedback is None or not feedback.friction:
+        return (
+            "The coefficient of friction is that of the drive's initial temperature; [mechanics.feedback] changes it."
+        )
+    return "The coefficient of friction follows the mean temperature of the tread."
 
 
 def _feedback_assumptions(choice: Feedback) -> str:

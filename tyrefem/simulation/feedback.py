@@ -68,7 +68,8 @@ def run(
         if (law := study.materials[region].softening) is not None
     }
     before, after = (_contact(tyre.schedule, t) for t in (0.0, end * (1 - 1e-12)))
-    outcome = FeedbackOutcome(choice.tolerance, tuple(changes), before, after, softened)
+    rubbing = None if cycles.rubbing is None else last.regions[cycles.rubbing]
+    outcome = FeedbackOutcome(choice.tolerance, tuple(changes), before, after, softened, rubbing)
     return replace(result, feedback=outcome, wall_time=wall_time)
 
 

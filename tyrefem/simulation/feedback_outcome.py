@@ -26,9 +26,11 @@ class FeedbackOutcome:
     Attributes
     ----------
     changes : K, of every run: largest difference between its temperatures and those of its strain cycles, over all
-        knots, contained air and means of the regions that soften; infinite for an interrupted run.
+        knots, contained air, means of the regions that soften and, for friction, of the tread; infinite for an
+        interrupted run.
     start, end : pressure and deflection at start and end.
     softened : region -> modulus of its compound at the end over the card's.
+    friction_temperature : degC, of the coefficient of friction at the end; None: it does not follow the run.
     """
 
     tolerance: float
@@ -36,6 +38,7 @@ class FeedbackOutcome:
     start: InflationState
     end: InflationState
     softened: dict[str, float]
+    friction_temperature: float | None = None
 
     @property
     def iterations(self) -> int:
@@ -81,4 +84,5 @@ class FeedbackOutcome:
             "tolerance_K": self.tolerance,
             **contacts,
             "relative_modulus_at_end": self.softened,
+            "friction_temperature_at_end_degC": self.friction_temperature,
         }

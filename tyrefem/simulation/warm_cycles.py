@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 
 from tyrefem.boundaries.contained_air import KELVIN
 from tyrefem.mechanics.cycle_schedule import CycleSchedule, KnotSolver, changes_cycle, ramp_knots, warming_knots
+from tyrefem.mechanics.footprint.pressed_tyre import mechanical_mesh
+from tyrefem.mechanics.rolling.roll import road_region
 from tyrefem.mechanics.strain_cycle import solved_case
 
 if TYPE_CHECKING:
@@ -100,8 +102,19 @@ class _Knot:
     cycle: StrainCycle
 
 
+def _rubbing(study: StudyData) -> str | None:
+    """The region on the road, if the tyre rolls with a friction that depends on its temperature."""
+    laws = {region: card.friction for region, card in study.materials.items() if card.friction is not None}
+    if not study.card.boundaries.sliding.rolls or not any(law.follows_temperature for law in laws.values()):
+        return None
+    region = road_region(mechanical_mesh(study).mesh)
+    return region if region in laws and laws[region].follows_temperature else None
+
+
 class WarmCycles:
     """Load cases at p + p_atm = (p_drive + p_atm) T_gas / T_gas,start, strain cycles at the regions' moduli.
+
+    The coefficient of friction of a tyre that rolls with friction is that of the mean temperature of its tread.
 
     Parameters
     ----------
@@ -117,6 +130,7 @@ class WarmCycles:
         drive, law = study.card.drive, study.card.boundaries.contained_air
         self.gas_start = law.start(drive.initial)
         self.softening = tuple(r for r, card in study.materials.items() if choice.modulus and card.softens)
+        self.rubbing = _rubbing(study) if choice.friction else None
         self.knots = tuple(
             tuple(ramp_knots(True) if changes_cycle(study, number) else warming_knots(choice.knots))
             for number, _ in enumerate(drive.phases)
@@ -163,12 +177,15 @@ class WarmCycles:
 
     def _distance(self, place: tuple[int, int], warmth: Warmth) -> float:
         moment = self._kept[place].moment
-        return moment.distance(self._moment(place, warmth), gas=self.choice.pressure, regions=self.softening)
+        regions = self.softening if self.rubbing is None else (*self.softening, self.rubbing)
+        return moment.distance(self._moment(place, warmth), gas=self.choice.pressure, regions=regions)
 
     def _solved(self, place: tuple[int, int], moment: TyreTemperatures) -> _Knot:
         number, knot = place
         warmed = (moment.gas + KELVIN) / (self.gas_start + KELVIN) if self.choice.pressure else 1.0
         case = self._cold.case(number, self.knots[number][knot], warmed)
+        if self.rubbing is not None and case.wheel is not None:
+            case = replace(case, wheel=replace(case.wheel, tread_temperature=moment.regions[self.rubbing]))
         softened = self._softened(moment)
         for other in self._kept.values():
             if (other.case, other.softened) == (case, softened):

@@ -176,23 +176,29 @@ def row(wheel: WheelOnRoad, state: RolledTyre) -> dict[str, float]:
     }
 
 
+def road_region(mesh: Any, boundary: str = "road") -> str:
+    """The region of a section's mesh that meets the road at its tread's boundary."""
+    on_road = mesh.f2t[0, np.asarray(mesh.boundaries[boundary])]
+    shares = {name: int(np.isin(on_road, members).sum()) for name, members in mesh.subdomains.items()}
+    return max(shares, key=lambda name: shares[name])
+
+
 def friction_card(pressed: Pressed) -> RoadFriction | None:
     """Friction of the card of the region that meets the road."""
     state = pressed.tyre.state
-    on_road = state.mesh.f2t[0, np.asarray(state.mesh.boundaries[state.tread])]
-    shares = {name: int(np.isin(on_road, members).sum()) for name, members in state.mesh.subdomains.items()}
-    return pressed.study.materials[max(shares, key=lambda name: shares[name])].friction
+    return pressed.study.materials[road_region(state.mesh, state.tread)].friction
 
 
-def tread_friction(pressed: Pressed) -> float | FrictionLaw:
-    """Friction of the card of the region that meets the road, at the drive's initial temperature; else `FRICTION`."""
+def tread_friction(pressed: Pressed, temperature: float | None = None) -> float | FrictionLaw:
+    """Friction of the card of the region that meets the road, at a temperature of the tread, degC, by default the
+    drive's initial one; without ``[friction]`` `FRICTION`."""
     law = friction_card(pressed)
     if law is None:
         return FRICTION
     if law.law == "constant" and not law.pressure_exponent:
         return law.coefficient
-    temperature = float(pressed.study.card.drive.initial)
-    return lambda speed, pressure: law(speed, pressure, temperature)
+    warm = float(pressed.study.card.drive.initial) if temperature is None else temperature
+    return lambda speed, pressure: law(speed, pressure, warm)
 
 
 def wheel_on_road(

@@ -18,7 +18,15 @@ from tyrefem.mechanics.footprint.pressed_tyre import inputs
 from tyrefem.mechanics.footprint.strain_harmonics import StrainHarmonics
 from tyrefem.mechanics.rolling.friction_rings import FrictionRings, contact_angles
 from tyrefem.mechanics.rolling.lagging_strains import LaggingFootprint, LaggingStrains, strain_amplitudes
-from tyrefem.mechanics.rolling.roll import TOLERANCE, RolledStudy, WheelOnRoad, friction_card, settled, wheel_on_road
+from tyrefem.mechanics.rolling.roll import (
+    TOLERANCE,
+    RolledStudy,
+    WheelOnRoad,
+    friction_card,
+    settled,
+    tread_friction,
+    wheel_on_road,
+)
 from tyrefem.mechanics.rolling.rolling_motion import RollingMotion
 from tyrefem.mechanics.rolling.section_fields import SectionFields
 
@@ -165,7 +173,7 @@ def rolled_footprint(study: StudyData, case: LoadCase) -> RolledFootprint:
     InputError : no ``[friction]`` on the card of the rubber on the road; a load, torque or slip that the contact
         cannot carry.
     """
-    key = (_tyre_key(study, case), case)
+    key = (_tyre_key(study, case), _warm(study, case), case)
     return _STATES.get(key, lambda: _rolled(study, case))
 
 
@@ -173,7 +181,8 @@ def rolled_study(study: StudyData, case: LoadCase) -> RolledStudy:
     """The rolling tyre of a load case as `roll` gives it; with its contact, and not kept."""
     state = case.wheel
     assert state is not None
-    wheel = _WHEELS.get((_tyre_key(study, case), _given(case), state.camber), lambda: _wheel(study, case))
+    key = (_tyre_key(study, case), _given(case), state.camber, _warm(study, case))
+    wheel = _WHEELS.get(key, lambda: _wheel(study, case))
     along = {"torque": state.torque or 0.0} if state.slip is None else {"slip": state.slip}
     try:
         return settled(wheel, RollingMotion(state.slip_angle), along, TOLERANCE)
@@ -199,14 +208,21 @@ def _speed(case: LoadCase) -> float:
     return max(case.speed / case.wheel.forward, SLOWEST) if case.speed else 1.0
 
 
+def _warm(study: StudyData, case: LoadCase) -> float | None:
+    """Temperature of the coefficient of friction, degC; None where it does not depend on it."""
+    if not any(card.friction is not None and card.friction.follows_temperature for card in study.materials.values()):
+        return None
+    assert case.wheel is not None
+    given = case.wheel.tread_temperature
+    return float(study.card.drive.initial) if given is None else given
+
+
 def _tyre_key(study: StudyData, case: LoadCase) -> Hashable:
     frictions = {region: card.friction for region, card in study.materials.items()}
-    # A coefficient that is not constant, and loss, are those of the drive's initial temperature.
-    warmth = (study.card.drive.initial, tuple((study.parts.temperatures or {}).items()))
     key: tuple[Hashable, ...] = (inputs(study), repr(frictions), case.pressure, case.drum_diameter, _speed(case))
-    if any(law is not None and law.law != "constant" for law in frictions.values()):
-        key += warmth
     if study.card.mechanics.rolling:
+        # Loss is that of the regions' temperatures.
+        warmth = (study.card.drive.initial, tuple((study.parts.temperatures or {}).items()))
         key += (repr(values_read(FEM_ROLLING, study.materials)), *warmth, _given(case))
     if study.card.mechanics.motion == "large":
         key += (_given(case),)
@@ -230,6 +246,7 @@ def _wheel(study: StudyData, case: LoadCase) -> WheelOnRoad:
     footprint = tyre.pressed.footprint
     if not tyre.pressed.balanced:
         footprint = tyre.pressed.pressing.solve(**wanted, tolerance=tyre.pressed.tolerance)
-    rolling = replace(tyre.rolling, camber=case.wheel.camber, influence=tyre.rolling.points)
+    friction = tread_friction(tyre.pressed, _warm(study, case))
+    rolling = replace(tyre.rolling, camber=case.wheel.camber, friction=friction, influence=tyre.rolling.points)
     on_road = replace(tyre.pressed, footprint=footprint)
     return WheelOnRoad(on_road, rolling, wanted.get("load"), wanted.get("deflection"), tyre.speed)
