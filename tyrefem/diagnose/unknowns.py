@@ -9,7 +9,7 @@ from typing import Any
 
 from tyrefem.cache import Cache
 from tyrefem.effects import catalogue
-from tyrefem.effects.effect import Effect, Parameter
+from tyrefem.effects.effect import Effect, Parameter, Prior
 from tyrefem.inputs.changes import scaled, value_at
 from tyrefem.inputs.study import StudyData
 from tyrefem.quantity import parse
@@ -31,6 +31,8 @@ class Unknown:
     effect, choice, parameter : for an effect's parameter: name, variant, and the parameter.
     origin : the parameter's value at x = 0 if the study has the effect.
     runs : the measured runs in which the effect acts; empty: all.
+    beside : other parameters of the effect (name, value in SI) that a new entry gets with this one; others have the
+        effect's defaults.
     """
 
     key: str
@@ -43,6 +45,7 @@ class Unknown:
     origin: float | None = None
     keys: tuple[str, ...] = ()
     runs: tuple[str, ...] = ()
+    beside: tuple[tuple[str, float], ...] = ()
 
     @property
     def step(self) -> float:
@@ -201,14 +204,16 @@ def with_values(
             if x:
                 entries.of(unknown)
             continue
-        prior = unknown.parameter.prior
-        # A fit may end on a bound to within rounding.
-        value = min(max(unknown.value(x), prior.low), prior.high)
-        text = value if prior.unit == "1" else f"{value!r} {prior.unit}"
-        entries.of(unknown)[unknown.parameter.name] = text
+        entries.of(unknown)[unknown.parameter.name] = _text(unknown.parameter.prior, unknown.value(x))
     if totals:
         changes["effects"] = entries.entries
     return study.replace(changes, like) if changes else study
+
+
+def _text(prior: Prior, value: float) -> float | str:
+    """A value as an entry has it. A fit may end on a bound to within rounding."""
+    within = min(max(value, prior.low), prior.high)
+    return within if prior.unit == "1" else f"{within!r} {prior.unit}"
 
 
 def _written(study: StudyData, key: str, known: Cache[Any] | None) -> Any:
@@ -242,5 +247,8 @@ class _Entries:
 
     def _added(self, unknown: Unknown) -> dict[str, Any]:
         entry = unknown.entry
+        if unknown.beside:
+            parameters = {each.name: each.prior for each in catalogue()[str(unknown.effect)].parameters()}
+            entry |= {name: _text(parameters[name], value) for name, value in unknown.beside}
         self.entries.append(entry)
         return entry

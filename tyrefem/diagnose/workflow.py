@@ -13,6 +13,7 @@ from tyrefem.compare.experiment import ColumnNames, Table, experiments
 from tyrefem.diagnose.amend import Change, amended, changes
 from tyrefem.diagnose.better_law import by_better_law
 from tyrefem.diagnose.candidates import Candidate, Members, SetPrior, in_single_runs, possible, simulated
+from tyrefem.diagnose.computed_wave import WithWave, computed_wave
 from tyrefem.diagnose.conformal import read_calibration
 from tyrefem.diagnose.criterion import Criterion
 from tyrefem.diagnose.diagnosis import DiagnosisData
@@ -102,6 +103,10 @@ def diagnose(study: StudyData, table: Table | None = None, **options: Unpack[Dia
         runs = _measured_drives(study, table, columns, method.settings)
         sensors = dict.fromkeys(name for run in runs for name in run.parts())
         conformal = read_calibration(method.calibration, study.name, list(sensors), [run.name for run in runs])
+    driven = [study.with_drive(dict(run.drive)) for run in _measured_drives(study, table, columns, method.settings)]
+    wave = computed_wave(driven or [study], method.candidates(study), work.tick)
+    if wave.onset is not None:
+        method = replace(method, candidates=WithWave(method.candidates, wave))
     looks: list[DiagnosisData] = []
     while not looks or (looks[-1].verdict == IDENTIFIED and len(looks) < method.settings.looks):
         current = looks[-1].study if looks else study
@@ -109,7 +114,7 @@ def diagnose(study: StudyData, table: Table | None = None, **options: Unpack[Dia
     result = looks.pop()
     while looks:
         result = replace(looks.pop(), again=result)
-    return replace(result, conformal=conformal)
+    return replace(result, conformal=conformal, notes=(*((wave.note,) if wave.note else ()), *result.notes))
 
 
 def _look_by_laws(
