@@ -6,6 +6,8 @@ It has 8 histories, three runs and one that is held out.
     python benchmarks/blind.py --cases 200 --seed 1 --truth structural --out results/blind-structural
 
 Prints a table for people and, as its last line, one JSON object with the rates. Interrupted, it goes on where it was.
+``--records`` names a file of finished cases (a JSON object a line): they are not run again, and new ones are added when
+the program ends or is interrupted. Those behind docs/evidence/diagnosis.md are in benchmarks/records.
 """
 
 from __future__ import annotations
@@ -14,10 +16,13 @@ import argparse
 import json
 import os
 import time
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import tyrefem as tf
 from tyrefem.diagnose.blind_rates import run_blind
+from tyrefem.output import atomic_path
 from tyrefem.reports.blind import save
 
 
@@ -30,13 +35,19 @@ def main() -> None:
     parser.add_argument("--out", type=Path, default=Path("results/blind"))
     parser.add_argument("--workers", type=int, default=os.cpu_count() or 1)
     parser.add_argument("--truth", choices=("ordinary", "structural"), default="ordinary")
+    parser.add_argument("--records", type=Path, help="File of finished cases, a JSON object a line.")
     parser.add_argument("--reduced", choices=("auto", "never"), default="auto")
     given = parser.parse_args()
     began = time.perf_counter()
-    result = run_blind(
-        tf.study(given.study), given.cases, given.seed, given.out, given.workers, reduced=given.reduced,
-        truth=given.truth,
-    )  # fmt: skip
+    rows = {} if given.records is None else recorded(given.records)
+    try:
+        result = run_blind(
+            tf.study(given.study), given.cases, given.seed, given.out, given.workers, reduced=given.reduced,
+            truth=given.truth, finished=rows,
+        )  # fmt: skip
+    finally:
+        if given.records is not None:
+            record(given.records, rows, given.out / "cases")
     save(result, given.out)
     for line in result.words():
         print(line)
@@ -51,6 +62,22 @@ def main() -> None:
         print(f"stated {row['stated']:.3f}: {row['right']} of {row['of']} right")
     rates = {name: rate.to_dict() for name, rate in result.rates.items()}
     print(json.dumps({"cases": len(result.rows), "seconds": time.perf_counter() - began, "rates": rates}))
+
+
+def recorded(path: Path) -> dict[int, dict[str, Any]]:
+    """Rows of a file of finished cases, by number."""
+    if not path.exists():
+        return {}
+    rows = [json.loads(line) for line in path.read_text(encoding="utf-8").splitlines()]
+    return {row["number"]: row for row in rows}
+
+
+def record(path: Path, rows: Mapping[int, dict[str, Any]], cases: Path) -> None:
+    """Write known rows and those of the files in ``cases`` to a file of finished cases."""
+    new = [json.loads(each.read_text(encoding="utf-8")) for each in cases.glob("*.json")]
+    every = {**rows, **{row["number"]: row for row in new}}
+    with atomic_path(path) as temporary:
+        temporary.write_text("".join(json.dumps(every[number]) + "\n" for number in sorted(every)), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -2,8 +2,9 @@
 
     python benchmarks/blind_tables.py --ordinary results/blind/cases --structural results/blind-structural/cases
 
-Reads the case files of ``tyrefem blind`` or ``benchmarks/blind.py``; the test need not be finished. Writes the rates
-and all failures as CSV below docs/evidence/tables, the picture of the structural cases, and the page's table of goals.
+Reads the case files of ``tyrefem blind`` or the records of ``benchmarks/blind.py``; the test need not be finished.
+Writes the rates and all failures as CSV below docs/evidence/tables, the picture of the structural cases, and the page's
+table of goals.
 """
 
 from __future__ import annotations
@@ -43,7 +44,7 @@ def main() -> None:
     """Write the tables."""
     parser = argparse.ArgumentParser(description=__doc__)
     for name in DATA_MODELS:
-        parser.add_argument(f"--{name}", type=Path, help="Folder with case files.")
+        parser.add_argument(f"--{name}", type=Path, help="Folder with case files, or a file of records.")
     parser.add_argument("--study", default="hidden-effect")
     parser.add_argument("--seed", type=int, default=1)
     given = vars(parser.parse_args())
@@ -54,9 +55,12 @@ def main() -> None:
             print("\n".join(blind.words()))
 
 
-def finished(folder: Path) -> tuple[dict[str, Any], ...]:
-    """The cases in a folder, in order of their numbers."""
-    rows = [json.loads(path.read_text(encoding="utf-8")) for path in folder.glob("*.json")]
+def finished(place: Path) -> tuple[dict[str, Any], ...]:
+    """The cases in a folder or in a file of records, in order of their numbers."""
+    if place.is_dir():
+        rows = [json.loads(path.read_text(encoding="utf-8")) for path in place.glob("*.json")]
+    else:
+        rows = [json.loads(line) for line in place.read_text(encoding="utf-8").splitlines()]
     return tuple(sorted(rows, key=lambda row: row["number"]))
 
 

@@ -104,3 +104,7 @@ def test_finished_cases_are_not_run_again(tmp_path: Path, monkeypatch: pytest.Mo
     assert ran == [0, 1, 2, 2, 3]
     assert result.rates["no effect: no gap"].right == 4
     assert (tmp_path / "blind.json").is_file()
+    # Rows of an earlier test count as finished, too.
+    known = {number: _row("none", [], "no gap", []) for number in (0, 2)}
+    blind_rates.run_blind(study, 3, 8, tmp_path, finished=known)
+    assert ran[5:] == [1]

@@ -39,6 +39,10 @@ def test_tables_picture_and_page_come_from_the_case_files(tmp_path: Path, monkey
         monkeypatch.setattr(module, name, place)
     rows = module.finished(folder)
     assert [row["number"] for row in rows] == [0, 1]
+    benchmark, records = script_module("benchmarks/blind.py"), tmp_path / "records.jsonl"
+    benchmark.record(records, {7: case(7), 1: case(1)}, folder)
+    assert [row["number"] for row in module.finished(records)] == [0, 1, 7]
+    assert benchmark.recorded(records)[1] == wrong
     module.write(Blind("s", 7, rows, data_model="structural"))
     text = page.read_text(encoding="utf-8")
     assert "old" not in text

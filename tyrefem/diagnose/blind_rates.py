@@ -135,7 +135,9 @@ def checked_model(name: str, field: str = "truth") -> str:
 
 #: Keywords of `run_blind`.
 BlindOptions = TypedDict(  # noqa: UP013
-    "BlindOptions", {"reduced": str, "mesh": Mapping[str, Any] | None, "truth": str}, total=False
+    "BlindOptions",
+    {"reduced": str, "mesh": Mapping[str, Any] | None, "truth": str, "finished": Mapping[int, Row]},
+    total=False,
 )
 
 
@@ -204,6 +206,7 @@ def run_blind(
     mesh : mesh of the synthetic data, as changes of a study by dotted names; default: `mesh_of`.
     truth : model of the data. "ordinary" (default): the study's, with hidden causes, another mesh and time
         integration. "structural": also another strain energy, other gauges and speed laws of films (`OtherModel`).
+    finished : rows of cases by number, of an earlier test with the same study, count and seed: not run again.
 
     Raises
     ------
@@ -225,7 +228,7 @@ def run_blind(
     tag = hashlib.sha256(text.encode()).hexdigest()[:12]
     store = folder / "cases"
     store.mkdir(parents=True, exist_ok=True)
-    rows: dict[int, Row] = {}
+    rows: dict[int, Row] = dict(options.get("finished", {}))
     for path in store.glob(f"{tag}-*.json"):
         rows[int(path.stem.split("-")[1])] = json.loads(path.read_text(encoding="utf-8"))
     left = [number for number in range(count) if number not in rows]
