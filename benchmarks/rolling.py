@@ -1,16 +1,17 @@
 """Rolling with friction: closed forms, power balance, and the measured 205/60R15 over its loads.
 
-    python benchmarks/rolling.py [--closed-forms] [--loss] [--measured] [--standing] [--large] [--resistance]
-        [--pictures]
+    python benchmarks/rolling.py [--closed-forms] [--loss] [--measured] [--standing] [--large] [--belt-angle]
+        [--resistance] [--pictures]
 
 Writes docs/evidence/tables/rolling-closed-forms.csv, rolling-loss.csv, rolling-measured.csv,
-rolling-standing.csv, rolling-large.csv and rolling-resistance-friction.csv. Nothing is fitted.
+rolling-standing.csv, rolling-large.csv, rolling-belt-angle.csv and rolling-resistance-friction.csv. Nothing is fitted.
 """
 
 from __future__ import annotations
 
 import argparse
 import csv
+import itertools
 import math
 import os
 import tempfile
@@ -56,6 +57,8 @@ BALANCES = (
 HARMONICS, PUSHES = 80, (1e-3, 3e-3, 5e-3)
 #: Slip angle, deg, and slip of the balances in large motion.
 LARGE = ((1.0, 0.0), (3.0, 0.0), (0.0, -0.02), (0.0, -0.05))
+#: Angles of the belts' cords to the circumference, deg, and loads, N, at which they are tried.
+BELT_ANGLES, BELT_LOADS = (20, 23, 26), (2000.0, 4000.0, 6000.0)
 #: Straight ahead without torque; tan delta of the tyre with loss.
 STRAIGHT, TANGENT = (math.inf, 0, 0, 0, 0), 0.15
 
@@ -271,6 +274,28 @@ def large() -> None:
             print(*words, flush=True)
 
 
+def belt_angle() -> None:
+    """Write slopes of slip, trail, deflection and growth by spin over the angle of the belts' cords."""
+    with (TABLES / "rolling-belt-angle.csv").open("w", encoding="utf-8", newline="") as stream:
+        table = csv.writer(stream, lineterminator="\n")
+        table.writerow([
+            "belt angle [deg]", "motion", "load [N]", "cornering stiffness [kN/rad]", "slip stiffness [kN]",
+            "trail [mm]", "deflection [mm]", "length [mm]", "growth of radius by spin [mm]",
+        ])  # fmt: skip
+        for angle, motion in itertools.product(BELT_ANGLES, ("linear", "large")):
+            cords = {f"materials.belt-{ply}.cords.angle": f"{angle} deg" for ply in (1, 2)}
+            study = tf.study(STUDY).replace({"mesh.size": "10 mm", **cords})
+            spinning = study.replace({"mechanics.rolling": True}).press(motion="linear")
+            for load in BELT_LOADS:
+                wheel = wheel_on_road(study, load=load, friction=1.0, motion=motion)
+                slopes, contact = slip_stiffness(wheel, HARMONICS), wheel.pressed.footprint
+                words = [str(angle), motion, f"{load:g}", f"{slopes.cornering / 1e3:.1f}", f"{slopes.slip / 1e3:.1f}",
+                         f"{1e3 * slopes.trail:.1f}", f"{1e3 * contact.deflection:.1f}", f"{1e3 * contact.length:.0f}",
+                         f"{1e3 * spinning.turning.centrifugal_growth:.2f}"]  # fmt: skip
+                table.writerow(words)
+                print(*words, flush=True)
+
+
 def resistance() -> None:
     """Write the rolling resistance of the measured tyre without and with friction."""
     study = tf.study(STUDY, {"mechanics.rolling": True})
@@ -320,6 +345,7 @@ def main() -> None:
         "measured": measured,
         "standing": standing,
         "large": large,
+        "belt-angle": belt_angle,
         "resistance": resistance,
         "pictures": pictures,
     }
