@@ -11,16 +11,14 @@ import typer
 from tyrefem.cli.common import (
     CaseOption,
     ForceOption,
-    JsonOption,
-    QuietOption,
     ReducedOption,
     SetOption,
     StudyArgument,
-    print_json,
     settings,
     warn,
 )
 from tyrefem.cli.progress import progress
+from tyrefem.cli.shell import answer_with, say
 from tyrefem.output.folder import results_folder
 
 
@@ -43,8 +41,6 @@ def blind(
         str, typer.Option("--truth", callback=_data_model, help="Model of the data: ordinary, structural.")
     ] = "ordinary",
     force: ForceOption = False,
-    quiet: QuietOption = False,
-    as_json: JsonOption = False,
 ) -> None:
     """Hide effects in synthetic data for this study's sensors and runs; report how often the diagnosis is right.
 
@@ -62,17 +58,15 @@ def blind(
     place = out or Path("results") / f"{loaded.name}-blind"
     with (
         results_folder(place, "blind", FILES, force=force, keeps=["cases/*.json", f"{PROGRESS}/*/*.npz"]) as folder,
-        progress(f"{loaded.name}: {cases} cases", 1.0, quiet=quiet or as_json) as step,
+        progress(f"{loaded.name}: {cases} cases", 1.0) as step,
     ):
         cores, tick = workers or os.cpu_count() or 1, lambda done: step(done / cases)
         result = run_blind(loaded, cases, seed, folder, cores, tick, reduced=reduced, truth=data_model)
         save(result, folder)
-    if as_json:
-        print_json(result.to_dict())
-        return
+    answer_with(result.to_dict())
     for line in result.words():
-        typer.echo(line)
-    typer.echo(f"results in {folder}")
+        say(line)
+    say(f"results in {folder}")
 
 
 #: Place among the commands.

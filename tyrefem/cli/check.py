@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from tyrefem.cli.common import warn
+from tyrefem.cli.progress import progress
+from tyrefem.cli.shell import answer_with, say
 from tyrefem.errors import InputError, nearest
 
 if TYPE_CHECKING:
@@ -41,7 +43,10 @@ def check(
             hint = nearest(file, known)
             raise InputError(f"no such file, and no study, sweep, section or material of that name{hint}", file=file)
         path = known[file]
-    typer.echo(f"{path}: {_card(path) if path.suffix.lower() == '.toml' else _table(path)}")
+    with progress(f"{path.name}: checked"):
+        words = _card(path) if path.suffix.lower() == ".toml" else _table(path)
+    answer_with({"file": path, "words": words})
+    say(f"{path}: {words}")
 
 
 def _table(path: Path) -> str:

@@ -14,7 +14,7 @@ import typer
 from typer.core import TyperGroup
 
 import tyrefem
-from tyrefem.cli.line import fail
+from tyrefem.cli.shell import all_speak, notify
 from tyrefem.errors import InputError, ResultWarning
 from tyrefem.estimates.work import LongWorkWarning
 from tyrefem.output import reading
@@ -69,12 +69,16 @@ def _options(
 
 
 def _register() -> None:
-    """Register every module of the package that has a ``register``; ``ORDER`` is its place in the help."""
+    """Register every module of the package that has a ``register``; ``ORDER`` is its place in the help.
+
+    Every command gets the options ``--quiet`` and ``--json``.
+    """
     names = [entry.name for entry in pkgutil.iter_modules([str(Path(__file__).parent)]) if entry.name != "commands"]
     modules = [importlib.import_module(f"{__package__}.{name}") for name in names]
     commands = [module for module in modules if hasattr(module, "register")]
     for module in sorted(commands, key=lambda module: module.ORDER):
         module.register(app)
+    all_speak(app)
 
 
 _register()
@@ -104,7 +108,7 @@ def _warnings_shown() -> Iterator[None]:
 
         def show(message: Warning | str, category: type[Warning], *rest: Any, **options: Any) -> None:
             if issubclass(category, LongWorkWarning | ResultWarning):
-                fail(f"warning: {message}")
+                notify(f"warning: {message}")
             else:
                 usual(message, category, *rest, **options)
 

@@ -1,16 +1,16 @@
-"""Options and helpers of all commands: ``--set``, ``--force``, ``--quiet``, shell completion, JSON on stdout."""
+"""Options and helpers of all commands: ``--set``, ``--force``, ``--case``, shell completion."""
 
 from __future__ import annotations
 
 import math
 import tomllib
 from collections.abc import Collection, Iterable
-from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
 from tyrefem.cli.line import fail as fail
+from tyrefem.cli.shell import notify
 from tyrefem.errors import InputError
 
 
@@ -19,7 +19,7 @@ def warn(warnings: Iterable[object], printed: Collection[str] = ()) -> tuple[str
     lines = tuple(map(str, warnings))
     for line in dict.fromkeys(lines):
         if line not in printed:
-            fail(f"warning: {line}")
+            notify(f"warning: {line}")
     return lines
 
 
@@ -40,11 +40,9 @@ SetOption = Annotated[
 ForceOption = Annotated[
     bool, typer.Option("--force", help="Replace files that this command did not write; an input is never replaced.")
 ]
-QuietOption = Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")]
 CaseOption = Annotated[
     str | None, typer.Option("--case", metavar="NAME", help="Use this case of a campaign; --set changes its values.")
 ]
-JsonOption = Annotated[bool, typer.Option("--json", help="Print the result as JSON on stdout, nothing else.")]
 
 
 def _reduced(choice: str) -> str:
@@ -114,17 +112,3 @@ def read_quantity(option: str, text: str, unit: str, **bounds: float) -> float:
         return Unit(unit, **bounds)(text)
     except InputError as error:
         raise error.within(field=option) from None
-
-
-def print_json(data: dict[str, Any]) -> None:
-    """Print data as JSON on stdout."""
-    import json
-
-    from tyrefem.output import jsonable
-
-    typer.echo(json.dumps(jsonable(data), indent=1))
-
-
-def print_file(path: Path) -> None:
-    """Print a JSON file unchanged on stdout."""
-    typer.echo(path.read_text(encoding="utf-8"), nl=False)

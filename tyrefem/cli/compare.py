@@ -15,19 +15,16 @@ from tyrefem.cli.common import (
     CaseOption,
     ForceOption,
     IgnoreOption,
-    JsonOption,
-    QuietOption,
     ReducedOption,
     RenameOption,
     SetOption,
     StudyArgument,
-    fail,
-    print_json,
     renamed,
     settings,
     warn,
 )
 from tyrefem.cli.progress import progress
+from tyrefem.cli.shell import answer_with, notify, say
 from tyrefem.interruption import keeping
 from tyrefem.output.folder import results_folder
 from tyrefem.processes import processes
@@ -51,8 +48,6 @@ def compare(
     workers: Annotated[int | None, typer.Option(min=1, help="Processes; default: one per core.")] = None,
     reduced: ReducedOption = "auto",
     force: ForceOption = False,
-    quiet: QuietOption = False,
-    as_json: JsonOption = False,
 ) -> None:
     """Compare a study with measured tables: deviation and validation uncertainty of each sensor, run and phase.
 
@@ -68,12 +63,12 @@ def compare(
     warn(loaded.warnings)
     place = out or Path("results") / f"{loaded.name}-compare"
     read = [table] if table else [entry.table for entry in loaded.measured]
-    quiet, keeps = quiet or as_json, [f"{PROGRESS}/*/*.npz"]
+    keeps = [f"{PROGRESS}/*/*.npz"]
     with results_folder(place, "compare", FILES, inputs=read, force=force, keeps=keeps) as folder:
         store = AnswerStore(folder / PROGRESS)
         with (
             keeping(lambda: store.kept),
-            progress(f"{loaded.name}: simulations", 1.0, quiet=quiet) as step,
+            progress(f"{loaded.name}: simulations", 1.0) as step,
             _side_by_side(workers or (os.cpu_count() or 1 if inputs else 1)) as executor,
         ):
             comparison = loaded.compare(
@@ -86,19 +81,17 @@ def compare(
                 progress=lambda done, total: step(done / total),
                 reduced=reduced,
                 store=store,
-                begin=None if quiet else fail,
+                begin=notify,
             )
             comparison.save(folder)
         store.clear()
-    if as_json:
-        print_json(comparison.to_dict())
-        return
+    answer_with(comparison.to_dict())
     columns = ["run", "sensor", "phase", "n", "bias_K", "rms_K", "largest_K", "at_s", "u_val_K", "beyond"]
-    typer.echo(comparison.table[columns].to_string(index=False, float_format="%.3g"))
-    typer.echo(comparison.summary)
+    say(comparison.table[columns].to_string(index=False, float_format="%.3g"))
+    say(comparison.summary)
     for note in comparison.notes:
-        typer.echo(note if note.startswith(("Note: ", "ERROR: ")) else f"Note: {note}")
-    typer.echo(f"results in {folder}; read {folder / 'comparison.html'}")
+        say(note if note.startswith(("Note: ", "ERROR: ")) else f"Note: {note}")
+    say(f"results in {folder}; read {folder / 'comparison.html'}")
 
 
 @contextmanager

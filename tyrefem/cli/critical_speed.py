@@ -5,10 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import typer
-
-from tyrefem.cli.common import print_json, warn
+from tyrefem.cli.common import warn
 from tyrefem.cli.progress import progress
+from tyrefem.cli.shell import answer_with, say
 from tyrefem.errors import InputError
 from tyrefem.output.folder import results_folder
 
@@ -25,8 +24,6 @@ def print_critical_speeds(
     out: Path | None,
     *,
     force: bool,
-    quiet: bool,
-    as_json: bool,
     pictures: bool,
     rise: bool = False,
 ) -> None:
@@ -46,7 +43,7 @@ def print_critical_speeds(
     place = out or Path("results") / f"{study.name}-critical-speed"
     with (
         results_folder(place, "critical-speed", FILES, force=force) as folder,
-        progress(f"{study.name}: critical speed", quiet=quiet or as_json),
+        progress(f"{study.name}: critical speed"),
     ):
         try:
             results = [critical_speed(study, pressure=p, temperature=t) for p in given for t in warmed]
@@ -60,14 +57,12 @@ def print_critical_speeds(
         except InputError as error:
             raise _placed(error, study, options) from None
         write_files(results, folder, rises=rises, pictures=pictures)
-    if as_json:
-        rows = {"study": study.name, "critical": [result.row() for result in results]}
-        print_json({**rows, "rises": [each.summary() for each in rises]} if rise else rows)
-        return
-    typer.echo(_words(results))
+    rows = {"study": study.name, "critical": [result.row() for result in results]}
+    answer_with({**rows, "rises": [each.summary() for each in rises]} if rise else rows)
+    say(_words(results))
     for each in rises:
-        typer.echo(_rise_words(each))
-    typer.echo(f"results in {folder}")
+        say(_rise_words(each))
+    say(f"results in {folder}")
 
 
 def _placed(error: InputError, study: Study, options: dict[str, str | None]) -> InputError:

@@ -12,18 +12,16 @@ from tyrefem.cli.common import (
     CaseOption,
     ForceOption,
     IgnoreOption,
-    JsonOption,
-    QuietOption,
     ReducedOption,
     RenameOption,
     SetOption,
     StudyArgument,
-    print_json,
     renamed,
     settings,
     warn,
 )
 from tyrefem.cli.progress import stages
+from tyrefem.cli.shell import answer_with, say
 from tyrefem.errors import InputError, nearest
 from tyrefem.interruption import keeping
 from tyrefem.output.folder import results_folder
@@ -62,8 +60,6 @@ def diagnose(
         Path | None, typer.Option(help="Folder of tyrefem isolability --calibrate, for a set with known coverage.")
     ] = None,
     force: ForceOption = False,
-    quiet: QuietOption = False,
-    as_json: JsonOption = False,
 ) -> None:
     """Find where measurements and study disagree, name the missing effect, and write the amended study.
 
@@ -88,7 +84,7 @@ def diagnose(
     read = [table] if table else [entry.table for entry in loaded.measured]
     with results_folder(place, "diagnose", FILES, inputs=read, force=force, keeps=[f"{PROGRESS}*/*/*.npz"]) as folder:
         store = ProgressStore(folder / PROGRESS)
-        with keeping(lambda: store.kept), stages(quiet=quiet or as_json) as tick:
+        with keeping(lambda: store.kept), stages() as tick:
             tick("reading", 0, 0)
             diagnosis = loaded.diagnose(
                 table,
@@ -106,9 +102,7 @@ def diagnose(
             tick("drawing", 0, 0)
             page = diagnosis.save(folder)
         store.clear()
-    if as_json:
-        print_json(diagnosis.to_dict())
-        return
+    answer_with(diagnosis.to_dict())
     from tyrefem.diagnose.headline import QUESTIONS, headline, label
     from tyrefem.diagnose.heat_words import heat_words
     from tyrefem.diagnose.law_words import law_words
@@ -116,16 +110,16 @@ def diagnose(
     from tyrefem.diagnose.words import noise_words
 
     if store.resumed:
-        typer.echo(f"{store.resumed} simulations of an interrupted diagnosis were reused")
+        say(f"{store.resumed} simulations of an interrupted diagnosis were reused")
     for question, sentence in zip((label(diagnosis).upper(), *QUESTIONS[1:]), headline(diagnosis), strict=True):
-        typer.echo(f"{question}: {sentence}")
+        say(f"{question}: {sentence}")
     heat = (heat_words(diagnosis), *law_words(diagnosis)) if diagnosis.verdict == UNEXPLAINED else ()
     conformal = () if diagnosis.conformal is None else (diagnosis.conformal.words(diagnosis.judgement.ranking),)
     for sentence in (*(f"{each}." for each in heat), *conformal, *noise_words(diagnosis)):
-        typer.echo(sentence)
+        say(sentence)
     for note in dict.fromkeys(note for look in diagnosis.looks for note in look.notes):
-        typer.echo(f"Note: {note}")
-    typer.echo(f"results in {folder}; read {page}, run {folder / 'amended.toml'}")
+        say(f"Note: {note}")
+    say(f"results in {folder}; read {page}, run {folder / 'amended.toml'}")
 
 
 #: Place among the commands.

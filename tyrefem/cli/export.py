@@ -11,16 +11,13 @@ import typer
 from tyrefem.cli.common import (
     CaseOption,
     ForceOption,
-    JsonOption,
-    QuietOption,
     SetOption,
     StudyArgument,
-    fail,
-    print_json,
     settings,
     warn,
 )
 from tyrefem.cli.progress import stages
+from tyrefem.cli.shell import answer_with, notify, say
 from tyrefem.errors import InputError
 from tyrefem.output.file import results_file
 
@@ -78,8 +75,6 @@ def export(
     fmu: Annotated[bool, typer.Option("--fmu", help="Write an FMU (FMI 2.0, co-simulation) beside the file.")] = False,
     workers: Annotated[int | None, typer.Option(min=1, help="Processes; default: one per core.")] = None,
     force: ForceOption = False,
-    quiet: QuietOption = False,
-    as_json: JsonOption = False,
 ) -> None:
     """Export a real-time model: inputs speed, load, pressure, ambient, road; outputs sensors, contained air.
 
@@ -109,7 +104,7 @@ def export(
     count = workers or os.cpu_count() or 1
     files = {"file": path} | ({"fmu": path.with_suffix(".fmu")} if fmu else {})
     with results_file(path, (".npz",), also=files.values(), force=force):
-        with stages(quiet=quiet or as_json) as tick:
+        with stages() as tick:
             certificate = write(
                 chosen,
                 path,
@@ -123,15 +118,13 @@ def export(
             from tyrefem.realtime.fmu import write_fmu
 
             write_fmu(path, files["fmu"])
-    if as_json:
-        print_json({**vars(certificate), **{name: str(file) for name, file in files.items()}})
-        return
+    answer_with({**vars(certificate), **{name: str(file) for name, file in files.items()}})
     for line in words(certificate):
-        typer.echo(line)
+        say(line)
     for file in files.values():
-        typer.echo(f"wrote {file} ({file.stat().st_size / 1e3:.0f} kB)")
+        say(f"wrote {file} ({file.stat().st_size / 1e3:.0f} kB)")
     if fmu and not has_binary(files["fmu"]):
-        fail("no C compiler is installed: the FMU holds only its source, which the importing tool has to compile")
+        notify("no C compiler is installed: the FMU holds only its source, which the importing tool has to compile")
 
 
 def _read(option: str, text: str, unit: str) -> float:

@@ -10,16 +10,14 @@ import typer
 from tyrefem.cli.common import (
     CaseOption,
     ForceOption,
-    JsonOption,
-    QuietOption,
     SetOption,
     StudyArgument,
-    print_json,
     read_quantity,
     settings,
     warn,
 )
 from tyrefem.cli.progress import stages
+from tyrefem.cli.shell import answer_with, say
 from tyrefem.errors import InputError
 from tyrefem.output.folder import results_folder
 
@@ -67,8 +65,6 @@ def forces(
     pictures: Annotated[bool, typer.Option(help="Draw the PNG picture.")] = True,
     out: Annotated[Path | None, typer.Option("--out", help="Folder; default: results/STUDY-forces.")] = None,
     force: ForceOption = False,
-    quiet: QuietOption = False,
-    as_json: JsonOption = False,
     changes: SetOption = None,
     case: CaseOption = None,
 ) -> None:
@@ -90,7 +86,7 @@ def forces(
     warn(loaded.warnings)
     with (
         results_folder(out or Path("results") / f"{loaded.name}-forces", "forces", FILES, force=force) as folder,
-        stages(quiet=quiet or as_json) as tick,
+        stages() as tick,
     ):
         tick(f"{loaded.name}: inflated and pressed", 0.0, 0.0)
         try:
@@ -100,11 +96,9 @@ def forces(
             write_files(result, folder, pictures=pictures)
         except InputError as error:
             raise _placed(error) from None
-    if as_json:
-        print_json(summary(result))
-        return
-    typer.echo(_words(result))
-    typer.echo(f"results in {folder}")
+    answer_with(summary(result))
+    say(_words(result))
+    say(f"results in {folder}")
 
 
 def _listed(name: str, text: str) -> list[float]:

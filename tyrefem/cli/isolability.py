@@ -12,15 +12,13 @@ import typer
 from tyrefem.cli.common import (
     CaseOption,
     ForceOption,
-    JsonOption,
-    QuietOption,
     SetOption,
     StudyArgument,
-    print_json,
     settings,
     warn,
 )
 from tyrefem.cli.progress import progress
+from tyrefem.cli.shell import answer_with, say
 from tyrefem.interruption import keeping
 from tyrefem.output.folder import results_folder
 
@@ -40,8 +38,6 @@ def isolability(
     ] = None,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the quick cases.")] = 1,
     force: ForceOption = False,
-    quiet: QuietOption = False,
-    as_json: JsonOption = False,
 ) -> None:
     """Compute which effects the study's sensors and runs can distinguish, and how strong these must be.
 
@@ -65,14 +61,14 @@ def isolability(
     with results_folder(place, "isolability", FILES, force=force, keeps=[f"{PROGRESS}/*/*.npz"]) as folder:
         store = ProgressStore(folder / PROGRESS)
         with keeping(lambda: store.kept):
-            with progress(f"{loaded.name}: sensitivities", 1.0, quiet=quiet or as_json) as step:
+            with progress(f"{loaded.name}: sensitivities", 1.0) as step:
                 known = planned_sensitivities(
                     loaded, workers=count, progress=lambda _what, done, total: step(done / max(total, 1)), store=store
                 )
             result = found_by(loaded, known=known)
             calibration = None
             if cases is not None:
-                with progress(f"{loaded.name}: {cases} quick cases", 1.0, quiet=quiet or as_json) as step:
+                with progress(f"{loaded.name}: {cases} quick cases", 1.0) as step:
                     calibration = calibrated(loaded, known, cases, seed, lambda done: step(done / cases))
             with atomic_folder(folder) as temporary:
                 result.table.to_csv(temporary / "isolability.csv", index=False, lineterminator="\n")
@@ -82,13 +78,10 @@ def isolability(
                 if calibration is not None:
                     save(calibration, temporary)
         store.clear()
-    if as_json:
-        contents = result.to_dict() | ({} if calibration is None else {"calibration": calibration.to_dict()})
-        print_json(jsonable(contents))
-        return
+    answer_with(result.to_dict() | ({} if calibration is None else {"calibration": calibration.to_dict()}))
     for line in [*result.words(), *([] if calibration is None else calibration.words())]:
-        typer.echo(line)
-    typer.echo(f"results in {folder}")
+        say(line)
+    say(f"results in {folder}")
 
 
 #: Place among the commands.

@@ -10,15 +10,13 @@ import typer
 from tyrefem.cli.common import (
     CaseOption,
     ForceOption,
-    JsonOption,
-    QuietOption,
     SetOption,
     StudyArgument,
-    print_file,
     settings,
     warn,
 )
 from tyrefem.cli.progress import progress
+from tyrefem.cli.shell import answer_with, say
 from tyrefem.errors import InputError
 from tyrefem.output.folder import results_folder
 
@@ -42,8 +40,6 @@ def life(
     vtk: Annotated[bool, typer.Option(help="Write the map for ParaView, life.vtu.")] = True,
     out: Annotated[Path | None, typer.Option("--out", help="Folder; default: results/STUDY-life.")] = None,
     force: ForceOption = False,
-    quiet: QuietOption = False,
-    as_json: JsonOption = False,
     changes: SetOption = None,
     case: CaseOption = None,
 ) -> None:
@@ -62,19 +58,16 @@ def life(
     check(loaded)
     warn(loaded.warnings)
     with results_folder(out or Path("results") / f"{loaded.name}-life", "life", FILES, force=force) as folder:
-        with progress(f"{loaded.name}: life", loaded.card.drive.end, quiet=quiet or as_json) as step:
+        with progress(f"{loaded.name}: life", loaded.card.drive.end) as step:
             computed = life_of(loaded, temperature=given, plateau=plateau, progress=step)
         write_files(computed, folder, pictures=pictures, vtk=vtk)
         moved: tuple[LifeShift, ...] = ()
         if sensitivity:
-            with progress(f"{loaded.name}: {', '.join(shifts_of(loaded))}", quiet=quiet or as_json):
+            with progress(f"{loaded.name}: {', '.join(shifts_of(loaded))}"):
                 moved = shifts(computed)
             write_files(computed, folder, moved, pictures=False, vtk=False)
-    if as_json:
-        print_file(folder / "summary.json")
-    else:
-        typer.echo(words(computed, moved))
-        typer.echo(f"results in {folder}")
+    answer_with(folder / "summary.json")
+    say(words(computed, moved), f"results in {folder}")
 
 
 def _temperature(text: str) -> float:

@@ -6,6 +6,7 @@ from typing import Annotated
 
 import typer
 
+from tyrefem.cli.shell import answer_with, say
 from tyrefem.errors import InputError, nearest
 
 KINDS = {"sections": "section", "materials": "material", "studies": "study", "sweeps": "sweep"}
@@ -23,41 +24,49 @@ def show_list(
     ] = "studies",
 ) -> None:
     """List sections, materials, studies or sweeps by name, the boundary laws, or the effects."""
-    if kind == "laws":
-        _laws()
-        return
-    if kind == "effects":
-        _effects()
-        return
+    rows = _laws() if kind == "laws" else _effects() if kind == "effects" else _cards(kind)
+    answer_with({"kind": kind, "entries": rows})
+
+
+def _cards(kind: str) -> list[dict[str, str]]:
     if kind not in KINDS:
         raise InputError(f"no kind '{kind}'{nearest(kind, [*KINDS, 'laws', 'effects'])}")
     from tyrefem import library
     from tyrefem.cards import read_toml
 
+    rows = []
     for name, path in sorted(library.names(KINDS[kind]).items()):
         try:
             title = str(read_toml(path).get("title", ""))
         except InputError as error:
             title = f"(cannot be read: {error.message})"
-        typer.echo(f"{name:28} {title}")
+        say(f"{name:28} {title}")
+        rows.append({"name": name, "title": title, "file": str(path)})
+    return rows
 
 
-def _laws() -> None:
+def _laws() -> list[dict[str, str]]:
     from tyrefem.boundaries import laws
 
+    rows = []
     for side in ("road", "outside_air", "contained_air", "rim", "sliding"):
         for name, law in sorted(laws(side).items()):
             first = (law.__doc__ or "").strip().splitlines()[0]
-            typer.echo(f"{side:14} {name:10} {first}")
+            say(f"{side:14} {name:10} {first}")
+            rows.append({"name": name, "title": first, "side": side})
+    return rows
 
 
-def _effects() -> None:
+def _effects() -> list[dict[str, str]]:
     from tyrefem.effects import catalogue
     from tyrefem.effects.description import by_family
 
+    rows = []
     for family, members in by_family(catalogue()).items():
         for effect in members:
-            typer.echo(f"{effect.name:28} {family:12} {effect.sentence}")
+            say(f"{effect.name:28} {family:12} {effect.sentence}")
+            rows.append({"name": effect.name, "title": effect.sentence, "family": family})
+    return rows
 
 
 #: Place among the commands.

@@ -10,16 +10,14 @@ import typer
 from tyrefem.cli.common import (
     CaseOption,
     ForceOption,
-    JsonOption,
-    QuietOption,
     SetOption,
     StudyArgument,
-    print_json,
     read_quantity,
     settings,
     warn,
 )
 from tyrefem.cli.progress import progress
+from tyrefem.cli.shell import answer_with, say
 from tyrefem.errors import InputError
 from tyrefem.output.folder import results_folder
 
@@ -41,8 +39,6 @@ def modes(
     pictures: Annotated[bool, typer.Option(help="Draw the PNG picture.")] = True,
     out: Annotated[Path | None, typer.Option("--out", help="Folder; default: results/STUDY-modes.")] = None,
     force: ForceOption = False,
-    quiet: QuietOption = False,
-    as_json: JsonOption = False,
     changes: SetOption = None,
     case: CaseOption = None,
 ) -> None:
@@ -60,7 +56,7 @@ def modes(
     warn(loaded.warnings)
     with (
         results_folder(out or Path("results") / f"{loaded.name}-modes", "modes", FILES, force=force) as folder,
-        progress(f"{loaded.name}: natural frequencies", quiet=quiet or as_json),
+        progress(f"{loaded.name}: natural frequencies"),
     ):
         try:
             options: dict[str, Any] = {"count": count, "pressure": given, "amplitude": strain}
@@ -73,11 +69,9 @@ def modes(
             placed = InputError(error.message, field=field, file=error.file or loaded.file)
             raise error if error.file else loaded.as_written(placed) from None
         write_files(result, folder, pictures=pictures)
-    if as_json:
-        print_json(result.summary())
-        return
-    typer.echo(_words(result))
-    typer.echo(f"results in {folder}")
+    answer_with(result.summary())
+    say(_words(result))
+    say(f"results in {folder}")
 
 
 def _words(result: NaturalFrequencies) -> str:

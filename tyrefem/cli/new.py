@@ -11,6 +11,7 @@ from typing import Annotated, Any
 import typer
 
 from tyrefem.cli.common import ForceOption, SetOption, settings
+from tyrefem.cli.shell import answer_with, say
 from tyrefem.cli.show import complete_names
 from tyrefem.errors import InputError, nearest
 from tyrefem.interruption import interruption_delayed
@@ -74,10 +75,11 @@ def new(
                 if place == target:
                     text = without_line(file.read_text(encoding="utf-8-sig"))
                     temporary.write_text(schema_line(kind, target) + first_line + text, encoding="utf-8")
-    typer.echo(f"{target} written, a copy of {source.parent.name if kind == 'study' else source.stem}")
+    answer_with({"kind": kind, "file": target, "copy_of": source, "note": note})
+    say(f"{target} written, a copy of {source.parent.name if kind == 'study' else source.stem}")
     if note:
-        typer.echo(f"note: {note}")
-    typer.echo(f"edit it, then: tyrefem check {target.parent if kind == 'study' else target}")
+        say(f"note: {note}")
+    say(f"edit it, then: tyrefem check {target.parent if kind == 'study' else target}")
 
 
 def _of_the_other_tyre(kind: str, source: Path) -> tuple[str, str]:

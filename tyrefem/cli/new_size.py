@@ -9,8 +9,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import typer
-
+from tyrefem.cli.progress import progress
+from tyrefem.cli.shell import answer_with, notify, say
 from tyrefem.errors import InputError
 
 #: Speed of a new study.
@@ -40,8 +40,9 @@ def new_size(kind: str, size: str, numbers: Mapping[str, Any], out: Path | None,
         if key not in NUMBERS
     }
     reference = {"size": size, **of_use, **({"parameters": named} if named else {})}
-    drawn = drawn_of(reference)
-    section = load(reference)  # also checks that the section can be built
+    with progress(f"{size}: drawn"):
+        drawn = drawn_of(reference)
+        section = load(reference)  # also checks that the section can be built
     name = re.sub(r"[^\w.]+", "-", drawn.size.text.lower())
     folder = Path(library.FOLDERS[kind])
     target = out or (folder / name / "study.toml" if kind == "study" else folder / f"{name}.toml")
@@ -58,15 +59,27 @@ def new_size(kind: str, size: str, numbers: Mapping[str, Any], out: Path | None,
     with results_file(target, (".toml",), force=force), atomic_path(target) as temporary:
         temporary.write_text(schema_line(kind, target) + text, encoding="utf-8")
     for warning in section.warnings:
-        typer.echo(f"warning: {warning}", err=True)
+        notify(f"warning: {warning}")
     guesses = sum("estimate" in number.source for number in drawn.rules)
-    typer.echo(
+    answer_with(
+        {
+            "kind": kind,
+            "file": target,
+            "size": drawn.size.text,
+            "rules": drawn.size.kind,
+            "outer_diameter_m": section.outer_diameter,
+            "overall_width_m": section.overall_width,
+            "numbers": {number.name: number.text for number in drawn.rules},
+            "estimates": guesses,
+        }
+    )
+    say(
         f"{target} written: {drawn.size.text} by the rules of kind {drawn.size.kind}, {len(drawn.rules.numbers)} "
         f"numbers, {guesses} estimates"
     )
-    typer.echo(
+    say(
         f"outer diameter {section.outer_diameter * 1e3:.1f} mm, width {section.overall_width * 1e3:.1f} mm on a "
         f"rim {drawn.rules['rim_width'].text} wide"
     )
     shown = target.parent if kind == "study" else target
-    typer.echo(f"see it: tyrefem show {kind} {shown}" if kind == "section" else f"then: tyrefem press {shown}")
+    say(f"see it: tyrefem show {kind} {shown}" if kind == "section" else f"then: tyrefem press {shown}")

@@ -12,17 +12,15 @@ from tyrefem.cli.common import (
     CaseOption,
     ForceOption,
     IgnoreOption,
-    JsonOption,
-    QuietOption,
     RenameOption,
     SetOption,
     StudyArgument,
-    print_json,
     renamed,
     settings,
     warn,
 )
 from tyrefem.cli.progress import stages
+from tyrefem.cli.shell import answer_with, say
 from tyrefem.errors import InputError
 from tyrefem.interruption import keeping
 from tyrefem.output.folder import results_folder
@@ -47,8 +45,6 @@ def plan(
     rename: RenameOption = None,
     workers: Annotated[int | None, typer.Option(min=1, help="Processes; default: one per core, at most 4.")] = None,
     force: ForceOption = False,
-    quiet: QuietOption = False,
-    as_json: JsonOption = False,
 ) -> None:
     """Propose the next runs and sensors that tell the remaining effects apart best, before a test or after a verdict.
 
@@ -71,7 +67,7 @@ def plan(
     read = [] if after is None else [after / POSTERIOR] if is_folder else [after]
     with results_folder(place, "plan", FILES, inputs=read, force=force, keeps=[f"{PROGRESS}*/*/*.npz"]) as folder:
         store = ProgressStore(folder / PROGRESS)
-        with keeping(lambda: store.kept), stages(quiet=quiet or as_json) as tick:
+        with keeping(lambda: store.kept), stages() as tick:
             table = after is not None and not is_folder
             result = loaded.plan(
                 after,
@@ -84,12 +80,10 @@ def plan(
             tick("drawing", 0, 0)
             page = result.save(folder)
         store.clear()
-    if as_json:
-        print_json(result.to_dict())
-        return
+    answer_with(result.to_dict())
     for line in result.words:
-        typer.echo(line)
-    typer.echo(f"results in {folder}; read {page}")
+        say(line)
+    say(f"results in {folder}; read {page}")
 
 
 #: Place among the commands.

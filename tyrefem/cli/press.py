@@ -11,17 +11,14 @@ import typer
 from tyrefem.cli.common import (
     CaseOption,
     ForceOption,
-    JsonOption,
-    QuietOption,
     SetOption,
     StudyArgument,
-    fail,
-    print_json,
     read_quantity,
     settings,
     warn,
 )
 from tyrefem.cli.progress import progress
+from tyrefem.cli.shell import answer_with, notify, say
 from tyrefem.errors import InputError
 from tyrefem.output.folder import results_folder
 
@@ -83,8 +80,6 @@ def press(
     vtk: Annotated[bool, typer.Option(help="Write the whole deformed tyre, tyre.vtu.")] = True,
     out: Annotated[Path | None, typer.Option("--out", help="Folder; default: results/STUDY-press.")] = None,
     force: ForceOption = False,
-    quiet: QuietOption = False,
-    as_json: JsonOption = False,
     changes: SetOption = None,
     case: CaseOption = None,
 ) -> None:
@@ -103,7 +98,7 @@ def press(
             raise InputError("no road acts on critical speeds; leave it out with --critical-speed", field=refused[0])
         loaded = load_study(study, settings(changes), case)
         print_critical_speeds(
-            loaded, pressure, temperature, out, force=force, quiet=quiet, as_json=as_json, pictures=pictures,
+            loaded, pressure, temperature, out, force=force, pictures=pictures,
             rise=rise,
         )  # fmt: skip
         return
@@ -123,7 +118,7 @@ def press(
     warn(loaded.warnings)
     with (
         results_folder(out or Path("results") / f"{loaded.name}-press", "press", FILES, force=force) as folder,
-        progress(f"{loaded.name}: inflated and pressed", quiet=quiet or as_json),
+        progress(f"{loaded.name}: inflated and pressed"),
     ):
         try:
             for place in at or ():
@@ -137,12 +132,10 @@ def press(
     if result.footprint.unstable and result.turning is None:
         many = ", ".join(map(str, result.footprint.unstable))
         where = result.footprint.unstable_place
-        fail(f"warning: the stiffness is negative in harmonics {many}: the footprint there is in doubt ({where})")
-    if as_json:
-        print_json(result.summary())
-        return
-    typer.echo(_words(result))
-    typer.echo(f"results in {folder}")
+        notify(f"warning: the stiffness is negative in harmonics {many}: the footprint there is in doubt ({where})")
+    answer_with(result.summary())
+    say(_words(result))
+    say(f"results in {folder}")
 
 
 def _motion(motion: str | None, *, balanced: bool) -> str | None:

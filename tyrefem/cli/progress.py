@@ -1,4 +1,8 @@
-"""Progress of a command: a bar on a terminal, else one line per minute on stderr; nothing with ``--quiet``."""
+"""Progress of a command with its remaining time: a bar on a terminal, else one line per minute on stderr.
+
+Nothing with ``--quiet``. What is left follows from the work done; of a stage that does not count its work, from the
+time that it took before on this machine.
+"""
 
 from __future__ import annotations
 
@@ -6,28 +10,67 @@ import signal
 import sys
 import threading
 import time
+import zlib
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass, field
 from typing import Any
+
+from tyrefem.cli.durations import expected, left, remember
+from tyrefem.cli.shell import shell
 
 #: Name of the stage, work done, total work (0: not known).
 Tick = Callable[[str, float, float], None]
 #: Time between the lines without a terminal, s.
 EVERY = 60.0
+#: A remaining time is told after so many seconds of a stage.
+SETTLED = 2.0
+
+
+@dataclass
+class Stage:
+    """A stage of the work: its name, and how far it is."""
+
+    name: str
+    done: float = 0.0
+    total: float = 0.0
+    start: float = field(default_factory=time.monotonic)
+    #: Duration the last time, s.
+    before: float | None = None
+
+    @property
+    def elapsed(self) -> float:
+        """Seconds since its start."""
+        return time.monotonic() - self.start
+
+    @property
+    def left(self) -> float | None:
+        """Seconds that are left, by the share done, or by the last time; None: not known."""
+        elapsed = self.elapsed
+        if elapsed < SETTLED:
+            return None
+        if self.total and self.done > 0:
+            return elapsed * max(self.total - self.done, 0.0) / self.done
+        return None if self.before is None or self.before <= elapsed else self.before - elapsed
+
+    @property
+    def words(self) -> str:
+        """The remaining time in words; empty: not known."""
+        return "" if self.left is None else left(self.left)
 
 
 @contextmanager
-def progress(description: str, total: float = 0.0, *, quiet: bool = False) -> Iterator[Callable[[float], None]]:
+def progress(description: str, total: float = 0.0) -> Iterator[Callable[[float], None]]:
     """Show the progress of one stage. Yields a function of the work done; without ``total``, only time is shown."""
-    with stages(quiet=quiet) as tick:
+    with stages() as tick:
         tick(description, 0.0, total)
         yield lambda done: tick(description, done, total)
 
 
 @contextmanager
-def stages(*, quiet: bool = False, every: float = EVERY) -> Iterator[Tick]:
+def stages(*, every: float = EVERY) -> Iterator[Tick]:
     """Show the progress of several stages. Yields a function of the stage, work done and total (0: not known)."""
-    if quiet:
+    if shell().quiet:
         yield lambda _what, _done, _total: None
     elif sys.stderr.isatty():
         with _bars() as tick:
@@ -37,17 +80,46 @@ def stages(*, quiet: bool = False, every: float = EVERY) -> Iterator[Tick]:
             yield tick
 
 
+def _key(stage: str) -> str:
+    """A stage of this command with these options."""
+    return f"{stage} {zlib.crc32(shell().work.encode()):08x}"
+
+
+def _next(stage: Stage | None, what: str, done: float, total: float) -> Stage:
+    """The stage with its work; a stage that follows another ends that one."""
+    if stage is None or stage.name != what:
+        if stage is not None:
+            remember(_key(stage.name), stage.elapsed)
+        stage = Stage(what, before=expected(_key(what)))
+    stage.done, stage.total = done, total
+    return stage
+
+
 @contextmanager
 def _bars() -> Iterator[Tick]:
     from rich.console import Console
-    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
+    from rich.progress import BarColumn, Progress, ProgressColumn, TaskProgressColumn, TextColumn, TimeElapsedColumn
+    from rich.text import Text
 
-    columns = (TextColumn("{task.description}"), BarColumn(bar_width=24), TaskProgressColumn(), TimeElapsedColumn())
+    stage: Stage | None = None
+
+    class Remaining(ProgressColumn):
+        """Remaining time of the stage at work."""
+
+        def render(self, task: Any) -> Text:
+            """The column of a task."""
+            at_work = stage is not None and stage.name == task.description and not task.finished
+            return Text(stage.words if at_work and stage is not None else "")
+
+    bar = BarColumn(bar_width=24)
+    columns = (TextColumn("{task.description}"), bar, TaskProgressColumn(), TimeElapsedColumn(), Remaining())
     with Progress(*columns, console=Console(stderr=True), transient=True) as shown:
         tasks: dict[str, Any] = {}
         endless: list[str] = []
 
         def tick(what: str, done: float, total: float) -> None:
+            nonlocal stage
+            stage = _next(stage, what, done, total)
             if what not in tasks:
                 # A stage without a total, such as reading, disappears when the next stage begins.
                 for name in endless:
@@ -57,26 +129,29 @@ def _bars() -> Iterator[Tick]:
             shown.update(tasks[what], completed=done, total=total or None)
 
         yield tick
+    if stage is not None:
+        remember(_key(stage.name), stage.elapsed)
 
 
 @contextmanager
 def _lines(every: float) -> Iterator[Tick]:
-    state: tuple[str, float, float] = ("", 0.0, 0.0)
+    stage: Stage | None = None
     start, ended = time.monotonic(), threading.Event()
 
     def tick(what: str, done: float, total: float) -> None:
-        nonlocal state
-        state = (what, done, total)
+        nonlocal stage
+        stage = _next(stage, what, done, total)
 
     def write() -> None:
         if hasattr(signal, "pthread_sigmask"):
             # The main thread handles Ctrl-C, and may delay it for a moment.
             signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
         while not ended.wait(every):
-            what, done, total = state
-            share = f", {done / total:.0%}" if total else ""
+            now = stage or Stage("")
+            share = f", {now.done / now.total:.0%}" if now.total else ""
             minutes = (time.monotonic() - start) / 60
-            print(f"tyrefem: {what}{share} after {minutes:.0f} min", file=sys.stderr, flush=True)
+            words = f", {now.words}" if now.words else ""
+            print(f"tyrefem: {now.name}{share} after {minutes:.0f} min{words}", file=sys.stderr, flush=True)
 
     writer = threading.Thread(target=write, name="progress", daemon=True)
     writer.start()
@@ -85,3 +160,5 @@ def _lines(every: float) -> Iterator[Tick]:
     finally:
         ended.set()
         writer.join()
+    if stage is not None:
+        remember(_key(stage.name), stage.elapsed)

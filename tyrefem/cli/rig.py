@@ -7,8 +7,9 @@ from typing import Annotated, Any
 
 import typer
 
-from tyrefem.cli.common import ForceOption, JsonOption, QuietOption, print_json, warn
+from tyrefem.cli.common import ForceOption, warn
 from tyrefem.cli.progress import progress
+from tyrefem.cli.shell import answer_with, say
 from tyrefem.errors import InputError, Interrupted
 from tyrefem.interruption import interruption_delayed
 from tyrefem.output.folder import results_folder
@@ -32,8 +33,6 @@ def simulate(
     every: Annotated[str, typer.Option(help="Time between readings.")] = "5 s",
     seed: Annotated[int | None, typer.Option(help="Seed of the instruments' noise; default: no noise.")] = None,
     force: ForceOption = False,
-    quiet: QuietOption = False,
-    as_json: JsonOption = False,
 ) -> None:
     """Simulate the sensors' readings in the card's tests: one table per run, pictures."""
     from tyrefem import rig as rigs
@@ -52,20 +51,18 @@ def simulate(
         raise InputError("must not be negative", field="--seed")
     with (
         results_folder(place, "rig simulate", simulation_files(card), inputs=beside(card, file), force=force) as folder,
-        progress(f"{_name(file)}: simulated tests", quiet=quiet or as_json),
+        progress(f"{_name(file)}: simulated tests"),
     ):
         done = rigs.simulate(card, every=step, seed=seed)
         write_simulation(done, folder)
     rows = {name: run.temperatures.max().round(2).to_dict() for name, run in done.runs.items()}
-    if as_json:
-        print_json({"highest_degC": rows, "words": done.words, "folder": folder})
-        return
+    answer_with({"highest_degC": rows, "words": done.words, "folder": folder})
     for name, highest in rows.items():
         seen = ", ".join(f"{sensor} {value:.1f}" for sensor, value in highest.items())
-        typer.echo(f"{name} ({card.runs[name].power:g} W): highest readings, degC: {seen}")
+        say(f"{name} ({card.runs[name].power:g} W): highest readings, degC: {seen}")
     for words in done.words:
-        typer.echo(f"note: {words}")
-    typer.echo(f"results in {folder}")
+        say(f"note: {words}")
+    say(f"results in {folder}")
 
 
 @group.command()
@@ -85,8 +82,6 @@ def identify(
     without: Annotated[list[str] | None, typer.Option(help="Leave out this sensor of the card. Repeatable.")] = None,
     constant: Annotated[bool, typer.Option("--constant", help="Properties that do not depend on temperature.")] = False,
     force: ForceOption = False,
-    quiet: QuietOption = False,
-    as_json: JsonOption = False,
 ) -> None:
     """Identify every layer's conductivity and specific heat with 95 % intervals; list what remains undetermined."""
     from tyrefem import rig as rigs
@@ -104,7 +99,7 @@ def identify(
     with results_folder(
         out or Path("results") / f"rig-{_name(file)}-identified", "rig identify", FILES, force=force
     ) as folder:
-        with progress(f"{_name(file)}: computed tests", total, quiet=quiet or as_json) as step:
+        with progress(f"{_name(file)}: computed tests", total) as step:
 
             def one_more() -> None:
                 nonlocal count
@@ -113,18 +108,16 @@ def identify(
 
             identification = rigs.identify(card, tests=tests, linear=not constant, progress=one_more)
         save(identification, folder, base or [])
-    if as_json:
-        print_json(identification.to_dict())
-        return
+    answer_with(identification.to_dict())
     for estimate in identification.properties:
-        typer.echo(f"{name_in_words(estimate.name):34}{shown(estimate, 4):42}{estimate.verdict}")
+        say(f"{name_in_words(estimate.name):34}{shown(estimate, 4):42}{estimate.verdict}")
     for words in identification.words:
-        typer.echo(f"- {words}")
-    typer.echo(f"results in {folder}; read {folder / 'report.html'}")
+        say(f"- {words}")
+    say(f"results in {folder}; read {folder / 'report.html'}")
     if chosen:
-        typer.echo("material cards: " + ", ".join(str(folder / "materials" / f"{layer}.toml") for layer in chosen))
+        say("material cards: " + ", ".join(str(folder / "materials" / f"{layer}.toml") for layer in chosen))
     else:
-        typer.echo("no material card written: name the card with loss tangent and stiffness by --base")
+        say("no material card written: name the card with loss tangent and stiffness by --base")
 
 
 @group.command()
@@ -137,8 +130,6 @@ def layers(
     most: Annotated[int, typer.Option(min=1, help="Largest number of layers to fit.")] = 4,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the noise of simulated readings.")] = 1,
     force: ForceOption = False,
-    quiet: QuietOption = False,
-    as_json: JsonOption = False,
 ) -> None:
     """Fit one set of readings with 1, 2, 3 ... layers, to see what more layers improve."""
     from tyrefem import rig as rigs
@@ -155,7 +146,7 @@ def layers(
     with results_folder(place, "rig layers", LAYER_FILES, force=force) as folder:
         finished: dict[int, Any] = {}
         try:
-            with progress(f"{_name(file)}: layers", counts[-1], quiet=quiet or as_json) as step:
+            with progress(f"{_name(file)}: layers", counts[-1]) as step:
                 if not tests:
                     done = rigs.simulate(card, seed=seed)
                     tests = tuple(matched(card, run, list(card.sensors)) for run in done.runs.values())
@@ -170,11 +161,9 @@ def layers(
             raise Interrupted(f"{len(finished)} of {len(counts)} fits are in {folder / 'layers.csv'}") from None
         comparison = LayerStudy(tuple(finished), tuple(finished.values()))
         save_layers(comparison, folder)
-    if as_json:
-        print_json({"rows": comparison.table().to_dict("records")})
-        return
-    typer.echo(comparison.table().to_string(index=False, float_format="%.3g"))
-    typer.echo(f"results in {folder}")
+    answer_with({"rows": comparison.table().to_dict("records")})
+    say(comparison.table().to_string(index=False, float_format="%.3g"))
+    say(f"results in {folder}")
 
 
 def _name(file: Path) -> str:

@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from tyrefem.cli.common import ForceOption
+from tyrefem.cli.progress import progress
+from tyrefem.cli.shell import answer_with, say
 from tyrefem.errors import InputError
 from tyrefem.output.file import PICTURES, results_file
 from tyrefem.output.folder import results_folder
@@ -57,19 +59,38 @@ def table() -> None:
     from tyrefem.boundaries.road_film import triangular_film
     from tyrefem.reports.figures.road import PAPER
 
-    typer.echo("Table 1: v m/s, FL m, literature, printed, recomputed H_c W/m2/K, recomputed - literature")
+    rows_1, rows_2 = [], []
+    say("Table 1: v m/s, FL m, literature, printed, recomputed H_c W/m2/K, recomputed - literature")
     for v, length, literature, printed in _paper_table(1).itertuples(index=False):
         film = triangular_film(v, length, *PAPER)
-        typer.echo(f"{v:8g} {length:6.2f} {literature:9.0f} {printed:9.0f} {film:11.2f} {film / literature - 1:+8.1%}")
-    typer.echo("Table 2: v km/h, FL m, printed, recomputed H_c W/m2/K, recomputed - printed")
+        rows_1.append(
+            {
+                "speed_m_s": v,
+                "footprint_length_m": length,
+                "literature_W_m2_K": literature,
+                "printed_W_m2_K": printed,
+                "recomputed_W_m2_K": film,
+            }
+        )
+        say(f"{v:8g} {length:6.2f} {literature:9.0f} {printed:9.0f} {film:11.2f} {film / literature - 1:+8.1%}")
+    say("Table 2: v km/h, FL m, printed, recomputed H_c W/m2/K, recomputed - printed")
     largest, count, printed_2 = 0.0, 0, _paper_table(2)
     lengths = [float(name.split("_")[1]) for name in printed_2.columns[1:]]
     for speed, *films in printed_2.itertuples(index=False):
         for length, printed in zip(lengths, films, strict=True):
             film = triangular_film(speed / 3.6, length, *PAPER)
             largest, count = max(largest, abs(film - printed)), count + 1
-            typer.echo(f"{speed:8g} {length:6.2f} {printed:9.2f} {film:9.2f} {film - printed:+8.3f}")
-    typer.echo(f"largest deviation of {count} values in table 2: {largest:.3f} W/m2/K")
+            rows_2.append(
+                {
+                    "speed_km_h": speed,
+                    "footprint_length_m": length,
+                    "printed_W_m2_K": printed,
+                    "recomputed_W_m2_K": film,
+                }
+            )
+            say(f"{speed:8g} {length:6.2f} {printed:9.2f} {film:9.2f} {film - printed:+8.3f}")
+    say(f"largest deviation of {count} values in table 2: {largest:.3f} W/m2/K")
+    answer_with({"table_1": rows_1, "table_2": rows_2, "largest_deviation_of_table_2_W_m2_K": largest})
 
 
 @road.command()
@@ -98,15 +119,24 @@ def film(
         "cattani": "sqrt(lambda C v/FL)",
         "half-space": "exact, road of its own effusivity",
     }
-    lines = []
+    lines, films = [], {}
     for name, law in sorted(laws("road").items()):
         chosen: Any = law.check({"law": name} | (of_road if name == "half-space" else {}))
-        lines.append(f"{name:16} {chosen.film(Contact(v, length, k, C)):10.1f} W/m2/K  {words.get(name, '')}".rstrip())
+        films[name] = chosen.film(Contact(v, length, k, C))
+        lines.append(f"{name:16} {films[name]:10.1f} W/m2/K  {words.get(name, '')}".rstrip())
     ideal = half_space_film(v, length, k, C)
     lines.append(f"{'half-space':16} {ideal:10.1f} W/m2/K  exact, road of constant temperature")
     depth = propagation_depth(length / v, k, C)
     lines.append(f"{'contact':16} {length / v * 1e3:10.4g} ms, penetrates {depth * 1e3:.4g} mm into the tread")
-    typer.echo("\n".join(lines))
+    say("\n".join(lines))
+    answer_with(
+        {
+            "films_W_m2_K": films,
+            "constant_road_temperature_W_m2_K": ideal,
+            "contact_s": length / v,
+            "penetration_m": depth,
+        }
+    )
 
 
 @road.command()
@@ -138,26 +168,43 @@ def averaging(
         inner_temperature=inside,
     )
     with nullcontext() if out is None else results_file(out, PICTURES, force=force):
-        errors = averaging_sweep(point, [v / 3.6 for v in SPEEDS], LENGTHS)
-        _print_averaging(errors)
+        with progress("contacts resolved"):
+            errors = averaging_sweep(point, [v / 3.6 for v in SPEEDS], LENGTHS)
+        above = _print_averaging(errors)
         if out is not None:
             _save(averaging_figure(errors), out)
+    rows = [
+        {
+            "footprint_length_m": error.point.footprint_length,
+            "speed_m_s": error.point.speed,
+            "resolved_degC": error.mean_surface,
+            "averaged_degC": error.averaged_surface,
+            "difference_K": error.surface_difference,
+            "swing_K": error.swing,
+        }
+        for error in errors
+    ]
+    answer_with({"rows": rows, "holds_from_m_s": above, "picture": out})
 
 
-def _print_averaging(errors: Sequence[Any]) -> None:
+def _print_averaging(errors: Sequence[Any]) -> dict[str, float | None]:
+    """Print the rows; footprint length -> speed from which averaging holds, m/s."""
     from tyrefem.reports.figures.road import SMALL, holds_above
 
-    typer.echo("FL m, v km/h: mean surface resolved, averaged degC; averaged - resolved K; swing in one contact K")
+    say("FL m, v km/h: mean surface resolved, averaged degC; averaged - resolved K; swing in one contact K")
     for error in errors:
         v, length = error.point.speed * 3.6, error.point.footprint_length
-        typer.echo(
+        say(
             f"{length:5.2f} {v:7.1f} {error.mean_surface:9.2f} {error.averaged_surface:9.2f} "
             f"{error.surface_difference:+8.2f} {error.swing:8.2f}"
         )
+    holds = {}
     for length in LENGTHS:
         above = holds_above([error for error in errors if error.point.footprint_length == length])
+        holds[f"{length:g}"] = above
         where = f"from {above * 3.6:.4g} km/h" if above is not None else "at no speed of the sweep"
-        typer.echo(f"footprint {length * 1e3:.0f} mm: averaging holds to {SMALL:g} K {where}")
+        say(f"footprint {length * 1e3:.0f} mm: averaging holds to {SMALL:g} K {where}")
+    return holds
 
 
 @road.command()
@@ -172,6 +219,7 @@ def figures(
     with results_folder(out, "road figures", ("figure-4.png", "figure-5.png"), force=force) as folder:
         _save(film_figure([0.14], points), folder / "figure-4.png")
         _save(film_figure([0.10, 0.12, 0.14, 0.16, 0.18]), folder / "figure-5.png")
+    answer_with({"pictures": [folder / "figure-4.png", folder / "figure-5.png"]})
 
 
 def _save(drawn: Any, path: Path) -> None:
@@ -180,7 +228,7 @@ def _save(drawn: Any, path: Path) -> None:
 
     with atomic_path(path) as temporary:
         temporary.write_bytes(picture(drawn, path.suffix))
-    typer.echo(f"drawn in {path}")
+    say(f"drawn in {path}")
 
 
 #: Place among the commands.

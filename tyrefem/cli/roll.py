@@ -11,16 +11,14 @@ import typer
 from tyrefem.cli.common import (
     CaseOption,
     ForceOption,
-    JsonOption,
-    QuietOption,
     SetOption,
     StudyArgument,
-    print_json,
     read_quantity,
     settings,
     warn,
 )
 from tyrefem.cli.progress import progress
+from tyrefem.cli.shell import answer_with, say
 from tyrefem.errors import InputError
 from tyrefem.output.folder import results_folder
 
@@ -82,8 +80,6 @@ def roll(
     vtk: Annotated[bool, typer.Option(help="Write the rolling tyre, tyre.vtu, and its footprint, contact.vtu.")] = True,
     out: Annotated[Path | None, typer.Option("--out", help="Folder; default: results/STUDY-roll.")] = None,
     force: ForceOption = False,
-    quiet: QuietOption = False,
-    as_json: JsonOption = False,
     changes: SetOption = None,
     case: CaseOption = None,
 ) -> None:
@@ -115,7 +111,7 @@ def roll(
     warn(loaded.warnings)
     with (
         results_folder(out or Path("results") / f"{loaded.name}-roll", "roll", FILES, force=force) as folder,
-        progress(f"{loaded.name}: rolling", quiet=quiet or as_json),
+        progress(f"{loaded.name}: rolling"),
     ):
         result: RolledStudy | SlipCurve
         try:
@@ -131,11 +127,9 @@ def roll(
             write_curve(curve, folder, pictures=pictures)
         else:
             write_files(rolled, folder, pictures=pictures, vtk=vtk)
-    if as_json:
-        print_json(result.summary())
-        return
-    typer.echo(words)
-    typer.echo(f"results in {folder}")
+    answer_with(result.summary())
+    say(words)
+    say(f"results in {folder}")
 
 
 def _values(name: str, text: str) -> float | list[float]:

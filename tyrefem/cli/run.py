@@ -10,17 +10,14 @@ import typer
 from tyrefem.cli.common import (
     CaseOption,
     ForceOption,
-    JsonOption,
-    QuietOption,
     SetOption,
     StudyArgument,
     fail,
-    print_file,
-    print_json,
     settings,
     warn,
 )
-from tyrefem.cli.progress import progress
+from tyrefem.cli.progress import progress, stages
+from tyrefem.cli.shell import answer_with, notify, say
 from tyrefem.errors import InputError, Interrupted
 from tyrefem.interruption import interruption_delayed, keeping
 from tyrefem.output.folder import results_folder
@@ -39,8 +36,6 @@ def run(
     vtk: Annotated[bool, typer.Option(help="Write the .pvd and .vtu files.")] = True,
     revolved: Annotated[bool, typer.Option("--revolved", help="Write the VTK files of the whole ring too.")] = False,
     force: ForceOption = False,
-    quiet: QuietOption = False,
-    as_json: JsonOption = False,
 ) -> None:
     """Simulate a study: temperatures, heat budget, rolling resistance, VTK, pictures and a report.
 
@@ -53,44 +48,43 @@ def run(
     values = settings(changes)
     loaded = load(study, values, case)
     place = out or Path("results") / loaded.name
-    quiet = quiet or as_json
     tables = [entry.table for entry in loaded.measured]
     if loaded.is_campaign:
         campaign = loaded.campaign()
         _refuse_overlaid(campaign, values)
         with results_folder(place, "run", campaign_files(campaign), inputs=tables, force=force) as folder:
-            _campaign(campaign, folder, pictures, vtk, revolved, as_json, quiet)
+            _campaign(campaign, folder, pictures, vtk, revolved)
     else:
         with results_folder(place, "run", run_files(loaded), inputs=tables, force=force) as folder:
-            _single(loaded, folder, pictures, vtk, revolved, as_json, quiet)
-        if as_json:
-            print_file(folder / "summary.json")
+            _single(loaded, folder, pictures, vtk, revolved)
+        answer_with(folder / "summary.json")
 
 
-def _single(study: Study, folder: Path, pictures: bool, vtk: bool, revolved: bool, as_json: bool, quiet: bool) -> None:
+def _single(study: Study, folder: Path, pictures: bool, vtk: bool, revolved: bool) -> None:
     from tyrefem.simulation.estimate import RunEstimate
 
     warned = warn(study.warnings)
     begins = f"{study.name}{RunEstimate.of(study).beginning}"
-    with progress(begins, study.card.drive.end, quiet=quiet) as step:
+    with progress(begins, study.card.drive.end) as step:
         result = study.run(step, partial=True)
     reached = f"{result.times[-1]:g} s" if result.history.interrupted else ""
     tables = f"the tables up to {reached}" if reached else "the tables"
     with keeping(f"{tables} are in {folder}, pictures and VTK files are not complete"):
         with interruption_delayed():
             result.save(folder)
-        if vtk:
-            result.to_vtk(folder / "vtk", revolved=revolved)
-        if pictures:
-            result.plot(folder / "pictures")
-            result.report(folder / "report.html")
+        with stages() as tick:
+            if vtk:
+                tick(f"{study.name}: VTK", 0, 0)
+                result.to_vtk(folder / "vtk", revolved=revolved)
+            if pictures:
+                tick(f"{study.name}: pictures and report", 0, 0)
+                result.plot(folder / "pictures")
+                result.report(folder / "report.html")
     warn(() if reached else result.warnings, warned)
-    if not as_json:
-        typer.echo(_words(result))
-        typer.echo(f"results in {folder}" + (f"; read {folder / 'report.html'}" if pictures else ""))
+    say(_words(result))
+    say(f"results in {folder}" + (f"; read {folder / 'report.html'}" if pictures else ""))
     if reached:
-        if as_json:
-            print_file(folder / "summary.json")
+        answer_with(folder / "summary.json")
         raise Interrupted(f"finished files are in {folder}", at=reached)
 
 
@@ -126,36 +120,32 @@ def _words(result: Result) -> str:
     return "\n".join(lines)
 
 
-def _campaign(
-    campaign: CampaignData, folder: Path, pictures: bool, vtk: bool, revolved: bool, as_json: bool, quiet: bool
-) -> None:
+def _campaign(campaign: CampaignData, folder: Path, pictures: bool, vtk: bool, revolved: bool) -> None:
     from tyrefem.reports.campaign import run_campaign, write_campaign_report
 
     study = campaign.study
 
     def each(result: Result, place: Path) -> None:
         for warning in result.warnings:
-            fail(f"warning: {place.name}: {warning}")
+            notify(f"warning: {place.name}: {warning}")
         if vtk:
             result.to_vtk(place / "vtk", revolved=revolved)
         if pictures:
             result.report(place / "report.html")
 
     with keeping(f"finished cases are in {folder / 'campaign.csv'}"):
-        with progress(study.name, len(campaign.cases), quiet=quiet) as step:
+        with progress(study.name, len(campaign.cases)) as step:
             table = run_campaign(campaign, folder, lambda done, _all: step(done), each)
         if pictures:
             write_campaign_report(campaign, table, folder / "report.html")
     failed = table[table["failure"] != ""]
-    if as_json:
-        print_json({"study": study.name, "cases": table.to_dict("records")})
-    else:
-        shown = ["case", "hottest_degC", "rolling_resistance_coefficient", "contained-air_degC"]
-        typer.echo(study.title)
-        typer.echo(table[[name for name in shown if name in table]].to_string(index=False, float_format="%.4g"))
-        typer.echo(f"{len(table)} cases, {len(failed)} failed; table in {folder / 'campaign.csv'}")
-        if pictures:
-            typer.echo(f"results in {folder}; read {folder / 'report.html'}")
+    answer_with({"study": study.name, "cases": table.to_dict("records")})
+    shown = ["case", "hottest_degC", "rolling_resistance_coefficient", "contained-air_degC"]
+    say(study.title)
+    say(table[[name for name in shown if name in table]].to_string(index=False, float_format="%.4g"))
+    say(f"{len(table)} cases, {len(failed)} failed; table in {folder / 'campaign.csv'}")
+    if pictures:
+        say(f"results in {folder}; read {folder / 'report.html'}")
     for entry in failed.itertuples():
         fail(f"case {entry.case}: {entry.failure}")
     if len(failed):

@@ -9,6 +9,8 @@ from typing import Annotated
 import typer
 
 from tyrefem.cli.common import ForceOption
+from tyrefem.cli.progress import progress
+from tyrefem.cli.shell import answer_with, say
 
 
 def schema(
@@ -25,23 +27,26 @@ def schema(
     from tyrefem.schemas.line import BEGINS, SETTINGS
     from tyrefem.schemas.written import settings, texts
 
-    made = texts()
+    with progress("schemas"):
+        made = texts()
     with results_folder(out, "schema", [*made], force=force) as folder:
         for name, text in made.items():
             with atomic_path(folder / name) as temporary:
                 temporary.write_text(text, encoding="utf-8")
         write_json({"schemas": [*made]}, folder / "summary.json")
     names = ", ".join(name.removesuffix(".json") for name in made)
-    typer.echo(f"{len(made)} schemas in {out}: {names}")
+    say(f"{len(made)} schemas in {out}: {names}")
     place, rules = Path(SETTINGS), settings(os.path.relpath(out))
-    if os.path.lexists(place) and not force and not made_by_this_tool(place):
-        typer.echo(f"{place} is your own and was kept; these lines in it tell the schemas:")
-        typer.echo(rules, nl=False)
+    kept = os.path.lexists(place) and not force and not made_by_this_tool(place)
+    answer_with({"folder": out, "schemas": [*made], "settings": None if kept else place})
+    if kept:
+        say(f"{place} is your own and was kept; these lines in it tell the schemas:")
+        say(rules.rstrip())
     else:
         with atomic_path(place) as temporary:
             temporary.write_text(rules, encoding="utf-8")
-        typer.echo(f"{place} here: Taplo, and VS Code with the extension 'Even Better TOML', complete and check")
-    typer.echo(f"a single file says its schema in its first line: {BEGINS}{out.as_posix()}/study.json")
+        say(f"{place} here: Taplo, and VS Code with the extension 'Even Better TOML', complete and check")
+    say(f"a single file says its schema in its first line: {BEGINS}{out.as_posix()}/study.json")
 
 
 #: Place among the commands.

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from tyrefem.cli.common import CaseOption, ForceOption, SetOption, settings, warn
+from tyrefem.cli.progress import progress
+from tyrefem.cli.shell import answer_with, say
 from tyrefem.errors import InputError, nearest
 from tyrefem.output.file import PICTURES, results_file
 from tyrefem.requirements import Requirements
@@ -63,15 +65,18 @@ def show(
     values = settings(changes)
     if out is not None and kind not in _SHOWN:
         raise InputError(f"a {kind} is printed, not drawn: remove this option", field="--out")
+    shown: dict[str, Any] = {"kind": kind, "name": name}
     if kind == "effect":
-        _effect(name)
+        answer_with({**shown, "content": _effect(name)})
         return
     if kind in ("material", "study", "sweep"):
-        _print(kind, name, values, case)
+        answer_with({**shown, **_print(kind, name, values, case)})
         return
     if kind == "mesh" and out is not None and out.suffix.lower() in MESHES:
         with results_file(out, MESHES, force=force):
-            _write_mesh(name, values, case, out)
+            with progress(f"{name}: mesh"):
+                facts = _write_mesh(name, values, case, out)
+            answer_with({**shown, "facts": facts, "picture": out})
         return
     stem = Path(name).stem if name.endswith(".toml") else Path(name).resolve().name
     if looks_like_size(name):
@@ -80,13 +85,15 @@ def show(
     from tyrefem.output import atomic_path
     from tyrefem.reports.figures.style import picture
 
-    with results_file(path, PICTURES + (MESHES if kind == "mesh" else ()), force=force):
+    suffixes = PICTURES + (MESHES if kind == "mesh" else ())
+    with results_file(path, suffixes, force=force), progress(f"{name}: {kind}"):
         figure, facts = _SHOWN[kind](name, values, case)
         with atomic_path(path) as temporary:
             temporary.write_bytes(picture(figure, path.suffix))
+    answer_with({**shown, "facts": facts, "picture": path})
     for key, value in facts.items():
-        typer.echo(f"{key:28} {_formatted(value)}")
-    typer.echo(f"drawn in {path}")
+        say(f"{key:28} {_formatted(value)}")
+    say(f"drawn in {path}")
 
 
 def _formatted(value: Any) -> str:
@@ -128,14 +135,15 @@ def _mesh(name: str, values: dict[str, Any], case: str | None) -> tuple[Any, dic
     return mesh_figure(tyre), tyre.summary()
 
 
-def _write_mesh(name: str, values: dict[str, Any], case: str | None, path: Path) -> None:
+def _write_mesh(name: str, values: dict[str, Any], case: str | None, path: Path) -> dict[str, Any]:
     from tyrefem.geometry import meshing
     from tyrefem.output import atomic_path
 
     tyre = _single(name, values, case).mesh()
     with atomic_path(path) as temporary:
         meshing.write(tyre, temporary)
-    typer.echo(f"{tyre.n_nodes} nodes, {tyre.n_elements} elements written to {path}")
+    say(f"{tyre.n_nodes} nodes, {tyre.n_elements} elements written to {path}")
+    return tyre.summary()
 
 
 def _strain(name: str, values: dict[str, Any], case: str | None) -> tuple[Any, dict[str, Any]]:
@@ -157,7 +165,8 @@ def _strain(name: str, values: dict[str, Any], case: str | None) -> tuple[Any, d
     return strain_figure(loaded), facts
 
 
-def _effect(name: str) -> None:
+def _effect(name: str) -> dict[str, Any]:
+    """Print an effect; what is printed, as data."""
     from tyrefem.effects import catalogue
     from tyrefem.effects.description import COLUMNS, equation, example, parameter_rows, ports
 
@@ -165,20 +174,26 @@ def _effect(name: str) -> None:
     if name not in known:
         raise InputError(f"no effect named '{name}'{nearest(name, known)}")
     effect = known[name]
-    typer.echo(f"{name} ({effect.family}): {effect.sentence}")
-    typer.echo(f"  {equation(effect)}\n  enters as: {ports(effect)}\n  source: {effect.source}\n")
+    say(f"{name} ({effect.family}): {effect.sentence}")
+    say(f"  {equation(effect)}\n  enters as: {ports(effect)}\n  source: {effect.source}\n")
     for row in parameter_rows(effect):
-        typer.echo(row[0])
+        say(row[0])
         for heading, cell in zip(COLUMNS[1:], row[1:], strict=True):
             if cell:
-                typer.echo(f"  {heading:14} {cell}")
-    typer.echo(f"\n{example(effect)}")
+                say(f"  {heading:14} {cell}")
+    say(f"\n{example(effect)}")
+    rows = [dict(zip(("parameter", *COLUMNS[1:]), row, strict=True)) for row in parameter_rows(effect)]
+    return {
+        "family": effect.family, "sentence": effect.sentence, "source": effect.source, "equation": equation(effect),
+        "parameters": rows, "example": example(effect),
+    }  # fmt: skip
 
 
 _SHOWN = {"section": _section, "mesh": _mesh, "strain": _strain}
 
 
-def _print(kind: str, name: str, values: dict[str, Any], case: str | None) -> None:
+def _print(kind: str, name: str, values: dict[str, Any], case: str | None) -> dict[str, Any]:
+    """Print a card as TOML; its file and content."""
     import tomli_w
 
     from tyrefem import library
@@ -199,7 +214,7 @@ def _print(kind: str, name: str, values: dict[str, Any], case: str | None) -> No
         of_a_case = {} if case is None else {"case": case}
         sweep = loaded(str(path), values, **of_a_case)
         warn(sweep.study.warnings)
-        typer.echo(f"# {sweep.words}")
+        say(f"# {sweep.words}")
         data = read_toml(path) | of_a_case
         if values:
             data["change"] = {**data.get("change", {}), **values}
@@ -210,8 +225,9 @@ def _print(kind: str, name: str, values: dict[str, Any], case: str | None) -> No
         card = MaterialCard.check(data, file)
         warn(warning.within(file=file) for warning in card.warnings())
         path = file
-    typer.echo(f"# {path}")
-    typer.echo(tomli_w.dumps(data), nl=False)
+    say(f"# {path}")
+    say(tomli_w.dumps(data).rstrip("\n"))
+    return {"file": path, "content": data}
 
 
 #: Place among the commands.

@@ -9,7 +9,8 @@ from typing import Annotated, Any
 
 import typer
 
-from tyrefem.cli.common import ForceOption, JsonOption, print_json
+from tyrefem.cli.common import ForceOption
+from tyrefem.cli.shell import answer_with, say
 from tyrefem.errors import InputError
 from tyrefem.output.file import PICTURES, results_file
 
@@ -50,7 +51,6 @@ def rise(
     ] = None,
     slider: Annotated[str, typer.Option(help="Solid that slides.", autocompletion=complete_solids)] = "rubber",
     track: Annotated[str, typer.Option(help="Solid below.", autocompletion=complete_solids)] = "teak",
-    as_json: JsonOption = False,
 ) -> None:
     """Compute the temperature rise of a track under a sliding pad (equations 1 to 5 and 9)."""
     from tyrefem.boundaries import friction_names as sliding
@@ -78,14 +78,13 @@ def rise(
         rises["rise_behind_K"] = edge * sliding.fall_off(_read("--behind", behind, "m"), long)
     if slid is not None:
         rises["share_into_slider"] = sliding.share_into_slider(long, _read("--slid", slid, "m"), top, below)
-    _print_values(rises, as_json)
+    _print_values(rises)
 
 
 @group.command()
 def tables(
     out: Annotated[Path | None, typer.Option("--out", help="PNG, PDF or SVG of table 2 to write.")] = None,
     force: ForceOption = False,
-    as_json: JsonOption = False,
 ) -> None:
     """Print Roberts' tables 2 (rubber on wood) and 3 (rubber on ice), measured beside predicted."""
     from tyrefem.boundaries import friction_names as sliding
@@ -97,21 +96,15 @@ def tables(
         from tyrefem.reports.figures.friction import wood_figure
 
         _draw(wood_figure, wood, out, force)
-    if as_json:
-        print_json(
-            {
-                "rubber_on_wood": [row.summary() for row in wood],
-                "rubber_on_ice": {
-                    "distance_behind_m": distance,
-                    "pressure_of_first_row_Pa": pressure,
-                    "rows": [row.summary(distance, pressure) for row in ice],
-                },
-            }
-        )
-        return
-    typer.echo("\n".join([*wood_lines(wood), "", *ice_lines(ice)]))
+    on_ice = {
+        "distance_behind_m": distance,
+        "pressure_of_first_row_Pa": pressure,
+        "rows": [row.summary(distance, pressure) for row in ice],
+    }
+    answer_with({"rubber_on_wood": [row.summary() for row in wood], "rubber_on_ice": on_ice, "picture": out})
+    say("\n".join([*wood_lines(wood), "", *ice_lines(ice)]))
     if out is not None:
-        typer.echo(f"drawn in {out}")
+        say(f"drawn in {out}")
 
 
 @group.command("locked-wheel")
@@ -124,7 +117,6 @@ def locked_wheel(
     ] = None,
     out: Annotated[Path | None, typer.Option("--out", help="PNG, PDF or SVG to write.")] = None,
     force: ForceOption = False,
-    as_json: JsonOption = False,
 ) -> None:
     """Compute contact temperature rise and friction of a locked wheel on asphalt against speed (equations 12, 13)."""
     from tyrefem.boundaries.friction_names import LockedWheel
@@ -154,18 +146,16 @@ def locked_wheel(
         from tyrefem.reports.figures.friction import locked_wheel_figure
 
         _draw(locked_wheel_figure, car, out, force)
-    if as_json:
-        print_json({"rows": rows, "decomposition_from_km_h": limit, "picture": out})
-        return
-    typer.echo(f"{'km/h':>6}{'exit rise K':>13}{'mean rise K':>13}{'uncapped exit K':>17}{'friction':>10}")
+    answer_with({"rows": rows, "decomposition_from_km_h": limit, "picture": out})
+    say(f"{'km/h':>6}{'exit rise K':>13}{'mean rise K':>13}{'uncapped exit K':>17}{'friction':>10}")
     for row in rows:
-        typer.echo(
+        say(
             f"{row['speed_km_h']:6}{row['exit_rise_K']:13.0f}{row['mean_rise_K']:13.0f}"
             f"{row['uncapped_exit_rise_K']:17.0f}{row['friction']:10.2f}"
         )
-    typer.echo(f"decomposition limits friction above {limit:.0f} km/h; all inputs are estimates")
+    say(f"decomposition limits friction above {limit:.0f} km/h; all inputs are estimates")
     if out is not None:
-        typer.echo(f"drawn in {out}")
+        say(f"drawn in {out}")
 
 
 def _draw(picture: Callable[[Any], Any], shown: Any, out: Path, force: bool) -> None:
@@ -212,12 +202,10 @@ def _contact_pressure(pressure: str | None, load: str | None, breadth: str | Non
     return force / (length * wide)
 
 
-def _print_values(values: dict[str, Any], as_json: bool) -> None:
-    if as_json:
-        print_json(values)
-        return
+def _print_values(values: dict[str, Any]) -> None:
+    answer_with(values)
     for key, value in values.items():
-        typer.echo(f"{key:28} {value:.5g}")
+        say(f"{key:28} {value:.5g}")
 
 
 #: Place among the commands.

@@ -10,16 +10,13 @@ import typer
 from tyrefem.cli.common import (
     CaseOption,
     ForceOption,
-    JsonOption,
-    QuietOption,
     SetOption,
     StudyArgument,
-    fail,
-    print_json,
     settings,
     warn,
 )
 from tyrefem.cli.progress import progress
+from tyrefem.cli.shell import answer_with, notify, say, say_table
 from tyrefem.errors import InputError, nearest
 from tyrefem.output.folder import results_folder
 
@@ -46,8 +43,6 @@ def strain(
     ] = None,
     out: Annotated[Path | None, typer.Option("--out", help="Folder; default: results/STUDY-strain.")] = None,
     force: ForceOption = False,
-    quiet: QuietOption = False,
-    as_json: JsonOption = False,
     changes: SetOption = None,
     case: CaseOption = None,
 ) -> None:
@@ -66,7 +61,7 @@ def strain(
     warn(chosen.warnings)
     with (
         results_folder(out or Path("results") / f"{chosen.name}-strain", "strain", FILES, force=force) as folder,
-        progress(f"{chosen.name}: {', '.join(wanted)}", quiet=quiet or as_json),
+        progress(f"{chosen.name}: {', '.join(wanted)}"),
     ):
         comparison = compare_laws(chosen, wanted)
         summary = comparison.summary()
@@ -75,12 +70,10 @@ def strain(
             comparison.table().to_csv(temporary / "strain.csv", index=False)
             (temporary / "strain.png").write_bytes(_picture(comparison))
     for refused, why in comparison.refused.items():
-        fail(f"warning: the strain law '{refused}' has no solution: {why}")
-    if as_json:
-        print_json(summary)
-        return
+        notify(f"warning: the strain law '{refused}' has no solution: {why}")
+    answer_with(summary)
     _print(comparison)
-    typer.echo(f"results in {folder}")
+    say(f"results in {folder}")
 
 
 def _picture(comparison: LawComparison) -> bytes:
@@ -91,7 +84,6 @@ def _picture(comparison: LawComparison) -> bytes:
 
 
 def _print(comparison: LawComparison) -> None:
-    from rich.console import Console
     from rich.table import Table
 
     titles = {
@@ -111,7 +103,7 @@ def _print(comparison: LawComparison) -> None:
             table.add_row(f"[bold]{heading}[/bold]")
         name = "deflection, mm" if row["kind"] == "deflection" else titles.get(row["name"], row["name"])
         table.add_row(name, *(f"{factor * row[law]:.2f}" for law in laws))
-    Console(highlight=False).print(table)
+    say_table(table)
 
 
 #: Place among the commands.

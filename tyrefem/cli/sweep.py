@@ -10,16 +10,14 @@ import typer
 from tyrefem.cli.common import (
     CaseOption,
     ForceOption,
-    JsonOption,
-    QuietOption,
     SetOption,
     complete_studies,
     fail,
-    print_file,
     settings,
     warn,
 )
 from tyrefem.cli.progress import stages
+from tyrefem.cli.shell import answer_with, say
 from tyrefem.errors import InputError, Interrupted
 from tyrefem.interruption import keeping
 from tyrefem.output.folder import results_folder
@@ -170,8 +168,6 @@ def sweep(
     ] = False,
     pictures: Annotated[bool, typer.Option(help="Draw the pictures and the page.")] = True,
     force: ForceOption = False,
-    quiet: QuietOption = False,
-    as_json: JsonOption = False,
 ) -> None:
     """Compute many variants of a study; write tables (CSV, Parquet), pictures and one page.
 
@@ -197,18 +193,15 @@ def sweep(
     warn(wanted.study.warnings)
     with (
         results_folder(out or Path("results") / f"{name}-sweep", "sweep", FILES, force=force, keeps=KEPT) as folder,
-        stages(quiet=quiet or as_json) as tick,
+        stages() as tick,
     ):
         design = computed_design(wanted, how.given({"folder": folder, "progress": tick}), scheduler, workers)
         tick("drawing", 0, 1)
         with keeping(f"finished variants are in {folder}; the same command resumes from there"):
             summary = save(design, folder, pictures=pictures)
-    if as_json:
-        print_file(folder / "summary.json")
-    else:
-        for line in summary["words"]:
-            typer.echo(line)
-        typer.echo(f"results in {folder}" + (f"; read {folder / 'sweep.html'}" if pictures else ""))
+    answer_with(folder / "summary.json")
+    say(*summary["words"])
+    say(f"results in {folder}" + (f"; read {folder / 'sweep.html'}" if pictures else ""))
     for variant, reason in list(design.failed.items())[:FAILURES_SHOWN]:
         fail(f"variant {variant}: {reason}")
     if len(design.failed) > FAILURES_SHOWN:

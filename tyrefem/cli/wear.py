@@ -11,16 +11,14 @@ import typer
 from tyrefem.cli.common import (
     CaseOption,
     ForceOption,
-    JsonOption,
-    QuietOption,
     SetOption,
     StudyArgument,
-    print_file,
     read_quantity,
     settings,
     warn,
 )
 from tyrefem.cli.progress import progress
+from tyrefem.cli.shell import answer_with, say
 from tyrefem.errors import InputError
 from tyrefem.output.folder import results_folder
 
@@ -54,8 +52,6 @@ def wear(
     pictures: Annotated[bool, typer.Option(help="Draw the PNG picture.")] = True,
     out: Annotated[Path | None, typer.Option("--out", help="Folder; default: results/STUDY-wear.")] = None,
     force: ForceOption = False,
-    quiet: QuietOption = False,
-    as_json: JsonOption = False,
     changes: SetOption = None,
     case: CaseOption = None,
 ) -> None:
@@ -85,7 +81,7 @@ def wear(
     warn(loaded.warnings)
     with results_folder(out or Path("results") / f"{loaded.name}-wear", "wear", FILES, force=force) as folder:
         try:
-            with progress(f"{loaded.name}: rolling", quiet=quiet or as_json):
+            with progress(f"{loaded.name}: rolling"):
                 rolled = None if of_drive else roll(loaded, **given)
                 worn_off: RingWear = drive_wear(loaded) if rolled is None else ring_wear(rolled)
             worn = worn_section(loaded, worn_off, kilometres) if distance is not None else None
@@ -93,11 +89,9 @@ def wear(
             option = OPTIONS.get(error.field or "", ("",))[0]
             raise InputError(error.message, field=option) if option and not error.file else error from None
         write_files(loaded, rolled, worn_off, folder, worn, pictures=pictures)
-    if as_json:
-        print_file(folder / "summary.json")
-        return
-    typer.echo(words(loaded, rolled, worn_off))
-    typer.echo(f"results in {folder}")
+    answer_with(folder / "summary.json")
+    say(words(loaded, rolled, worn_off))
+    say(f"results in {folder}")
 
 
 #: Place among the commands.

@@ -5,13 +5,14 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+from tyrefem.schemas.answer_schema import answers_schema
 from tyrefem.schemas.files import FILES
 from tyrefem.schemas.line import settings_text
 
 
 def texts() -> dict[str, str]:
     """File name -> text of every schema."""
-    made = {f"{kind}.json": schema() for kind, (_, schema) in FILES.items()}
+    made = {f"{kind}.json": schema() for kind, (_, schema) in FILES.items()} | {"answers.json": answers_schema()}
     return {name: json.dumps(schema, indent=1, ensure_ascii=False) + "\n" for name, schema in made.items()}
 
 

@@ -1,0 +1,92 @@
+"""Every command with ``--json`` prints one JSON object with the documented keys, and quiet nothing but errors."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from every_command import Command, commands
+from jsonschema import Draft7Validator
+from jsonschema.exceptions import best_match
+
+from tyrefem.cli import main
+from tyrefem.schemas.answer_schema import answer_of, answers_schema
+from tyrefem.schemas.answers import ANSWERS
+
+SCHEMA = answers_schema()
+#: Commands that take seconds; the others are tried here too, with ``--json`` alone.
+QUICK = ("check", "list", "new", "road film", "run", "show", "slide rise", "sweep")
+
+
+def checked(command: str, text: str) -> None:
+    """The text is one JSON object, with the keys of the command."""
+    data = json.loads(text)
+    assert isinstance(data, dict)
+    names = answer_of(command)
+    assert names, f"'{command}': its keys are missing in tyrefem/schemas/answers.py"
+    problems = [best_match(Draft7Validator({**SCHEMA, "anyOf": [{"$ref": f"#/definitions/{name}"}]}).iter_errors(data))
+                for name in names]  # fmt: skip
+    assert None in problems, [problem.message for problem in problems if problem]
+
+
+@pytest.mark.parametrize("command", commands(), ids=lambda command: command.name)
+def test_json_is_one_object_with_the_documented_keys(
+    command: Command, here: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    assert {"as_json", "quiet"} <= command.options
+    code = main(command.line(command.out(here / "new"), "--json"))
+    out, err = capfd.readouterr()
+    assert code == 0, err
+    checked(command.words, out)
+    assert all(line.startswith("tyrefem: ") for line in err.splitlines())
+
+
+@pytest.mark.parametrize("words", QUICK)
+def test_quiet_says_nothing(words: str, here: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    command = next(each for each in commands() if each.words == words)
+    assert main(command.line(command.out(here / "new"), "--quiet")) == 0
+    assert capfd.readouterr() == ("", "")
+    # Quiet, the answer in JSON is still given.
+    assert (
+        main(command.line(command.out(here / "again"), "-q", "--json", *(["--force"] if words == "new" else []))) == 0
+    )
+    out, err = capfd.readouterr()
+    checked(words, out)
+    assert err == ""
+
+
+@pytest.mark.parametrize("options", [["--json"], ["--quiet"], ["--quiet", "--json"]])
+def test_an_error_is_one_line_on_stderr(options: list[str], here: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", "study.toml", "--set", "drive.speed=5 kg", *options]) == 2
+    out, err = capfd.readouterr()
+    assert out == ""
+    assert err.startswith("tyrefem: study.toml: drive.speed: ")
+    assert len(err.splitlines()) == 1
+
+
+@pytest.mark.parametrize("options", [[], ["--json"], ["--quiet"]])
+def test_warnings_are_on_stderr_unless_quiet(options: list[str], here: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    unlikely = ["--set", "materials.tread.density.value=1.18 kg/m**3", "--no-pictures", "--no-vtk", "--out", "new"]
+    assert main(["run", "study.toml", *unlikely, *options]) == 0
+    out, err = capfd.readouterr()
+    assert ("is unlikely" in err) == (options != ["--quiet"])
+    if options == ["--json"]:
+        checked("run", out)
+
+
+def test_other_questions_to_a_command_are_documented_too(here: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    assert main(["press", "study.toml", "--critical-speed", "--out", "new", "--json", "--no-pictures"]) == 0
+    checked("press", capfd.readouterr().out)
+    assert main(["roll", "study.toml", "--slip-angle", "0 deg, 1 deg", "--out", "curve", "--json"]) == 0
+    checked("roll", capfd.readouterr().out)
+    (here / "cases.csv").write_text("name,drive.speed [mph]\nslow,10\nfast,20\n", encoding="utf-8")
+    text = (here / "study.toml").read_text(encoding="utf-8")
+    (here / "campaign.toml").write_text('cases = "cases.csv"\n' + text, encoding="utf-8")
+    assert main(["run", "campaign.toml", "--out", "cases", "--json", "--no-pictures", "--no-vtk"]) == 0
+    checked("run", capfd.readouterr().out)
+
+
+def test_no_keys_of_a_command_that_there_is_not() -> None:
+    words = {each.words for each in commands()}
+    assert {name.partition(" (")[0].partition(" --")[0] for name in ANSWERS} == words
