@@ -14,6 +14,7 @@ __version__ = "0.1.0"
 
 _WHERE = {
     "study": "api",
+    "load": "api",
     "section_from_size": "api",
     "Study": "api",
     "Result": "api",

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import ast
 import logging
+import re
 import sys
+import zlib
 
 import meshio
 import numpy as np
@@ -11,7 +14,9 @@ import pytest
 import pyvista
 
 from tyrefem.reports import view3d
+from tyrefem.reports.grids import pyvista_grid
 from tyrefem.reports.vtk import saved_times, write_series
+from tyrefem.reports.vtu import VtuFile, compressed
 
 
 @pytest.fixture(scope="module", params=["result", "quadratic"])
@@ -22,6 +27,15 @@ def run(request):
 @pytest.fixture(scope="module")
 def series(run, tmp_path_factory):
     return run.to_vtk(tmp_path_factory.mktemp("vtk"))
+
+
+def numbers_in(file):
+    """Kind of number -> name -> number, as a comment of a .vtu or .pvd file says."""
+    head = file.read_bytes().partition(b"-->")[0].decode("utf-8")
+    kinds = {"region": {}, "zone": {}}
+    for kind, number, name in re.findall(r"^ +(region|zone) (\d+) = (.+)$", head, re.MULTILINE):
+        kinds[kind][name] = int(number)
+    return kinds
 
 
 def read(series, number):
@@ -57,7 +71,9 @@ def test_regions_zones_and_their_areas(run, series):
     for kind, names in (
         ("region", run.study.section.regions), ("zone", [zone.name for zone in run.tyre.schedule.zones]),
     ):  # fmt: skip
-        numbers = {name: int(grid.field_data[f"{kind}_id_{name}"][0]) for name in names}
+        numbers = numbers_in(series)[kind]
+        assert list(numbers) == list(names)
+        assert numbers == numbers_in(series.with_name(f"{series.stem}_0000.vtu"))[kind]
         assert sorted(numbers.values()) == list(range(1, len(names) + 1))
         for name, number in numbers.items():
             area = sized["Area"][grid[kind] == number].sum()
@@ -73,7 +89,7 @@ def test_cell_data_give_the_power_back(run, series):
     factor = 2 if run.study.section.half else 1
     assert factor * power == pytest.approx(run.heat_budget.power("generated")[-1], rel=0.03)
     for zone in run.tyre.schedule.zones:
-        here = grid["zone"] == int(grid.field_data[f"zone_id_{zone.name}"][0])
+        here = grid["zone"] == numbers_in(series)["zone"][zone.name]
         energy = run.tyre.sources[zone.name].energy_density(
             run.tyre.problem.points(zone.name), float(run.times[-1]) - 1e-6
         )
@@ -92,8 +108,17 @@ def test_meshio_reads_them_too(run, series):
 def test_only_whole_files_with_relative_paths(series):
     text = series.read_text()
     assert str(series.parent) not in text
-    assert all(file.suffix in (".pvd", ".vtu") and not file.name.startswith(".") for file in series.parent.iterdir())
-    assert "region_id_tread = 3" in text
+    kinds = (".pvd", ".vtu", ".py")
+    assert all(file.suffix in kinds and not file.name.startswith(".") for file in series.parent.iterdir())
+    assert "region 3 = tread" in text
+
+
+def test_no_arrays_but_those_of_the_run(series):
+    """Names are a comment: ParaView lists what there is to see, and the time."""
+    assert list(read(series, 0).field_data.keys()) == ["TimeValue"]
+    collection = pyvista.get_reader(str(series)).read()[0]
+    assert collection.point_data.keys() == ["temperature_degC"]
+    assert collection.cell_data.keys() == ["region", "zone", "heat_source_W_m3", "strain_energy_J_m3"]
 
 
 def test_interrupted_runs_end_with_what_was_reached(stopped, tmp_path):
@@ -115,7 +140,7 @@ def test_the_ring_is_closed_and_has_the_regions_volumes(run, segments, tmp_path)
     facets = segments / (2 * np.pi) * np.sin(2 * np.pi / segments)
     mesh = run.tyre.mesh
     for region in run.study.section.regions:
-        number = int(ring.field_data[f"region_id_{region}"][0])
+        number = numbers_in(series)["region"][region]
         volume = volumes[ring["region"] == number].sum()
         assert volume == pytest.approx(facets * mesh.volume(region), rel=1e-4)
     assert ring["temperature_degC"].reshape(segments, -1) == pytest.approx(
@@ -158,3 +183,64 @@ def test_a_picture_that_was_drawn_is_kept(series, tmp_path, monkeypatch):
     png = view3d.screenshot(series, tmp_path / "3d.png")
     assert png == tmp_path / "3d.png"
     assert series.name in png.read_text()
+
+
+def test_a_grid_in_memory_is_the_one_in_the_file(run, series):
+    last = len(saved_times(run)) - 1
+    grid, file = pyvista_grid(run, saved_times(run)[last]), read(series, last)
+    assert (grid.points == file.points).all()
+    assert (grid.cells == file.cells).all()
+    assert (grid.celltypes == file.celltypes).all()
+    for name in file.point_data.keys() + file.cell_data.keys():
+        assert (grid[name] == file[name]).all()
+    assert list(grid.field_data["region_names"]) == list(run.study.section.regions)
+
+
+def test_the_ring_is_compressed_once(run, tmp_path, monkeypatch):
+    """Points and cells for all times together, values for one segment: this is what takes the time."""
+    sizes = []
+    compress = zlib.compress
+    monkeypatch.setattr(zlib, "compress", lambda data, level: sizes.append(len(data)) or compress(data, level))
+    segments = 36
+    series = write_series(run, tmp_path, revolved=True, segments=segments)
+    ring = pyvista.read(series.with_name(f"{series.stem}-revolved_0000.vtu"))
+    fixed = 4 * ring.n_points * 3 + ring.n_cells * (4 * (ring.cells[0] + 1) + 1)
+    changing = (4 * ring.n_points + 4 * 4 * ring.n_cells) / segments * len(saved_times(run))
+    plane = sum(file.stat().st_size for file in tmp_path.glob("*.vtu") if "revolved" not in file.name) * 20
+    assert sum(sizes) < fixed + changing + plane
+
+
+@pytest.mark.parametrize("block", [16, 64, 1 << 16])
+def test_any_block_is_read_back(block, tmp_path):
+    data = np.arange(50, dtype="<f4").tobytes()
+    lengths = np.frombuffer(compressed(data, block)[: 4 * (3 + -(-len(data) // block))], "<u4")
+    assert lengths[0] == -(-len(data) // block)
+    assert lengths[1] == block
+    assert lengths[2] == len(data) % block
+    points = np.zeros((4, 3))
+    points[:, :2] = [[0, 0], [1, 0], [1, 1], [0, 1]]
+    file = VtuFile(points, np.array([[0, 1, 2, 3]]), "quad")
+    grid = pyvista.read(file.write(tmp_path / "a.vtu", {"v": np.arange(12.0).reshape(4, 3)}, {"n": np.array([7])}))
+    assert (grid["v"] == np.arange(12.0).reshape(4, 3)).all()
+    assert grid["n"].tolist() == [7]
+
+
+@pytest.mark.parametrize("revolved", [False, True])
+def test_the_script_for_paraview_is_python_and_shows_the_files_beside_it(run, tmp_path, revolved):
+    """It was tried in ParaView 5.11, which the tests do not have."""
+    series = write_series(run, tmp_path, revolved=revolved, segments=12)
+    shown = series.with_name(f"{series.stem}-revolved.pvd") if revolved else series
+    tree = ast.parse(shown.with_suffix(".py").read_text(encoding="utf-8"))
+    values = {
+        node.targets[0].id: ast.literal_eval(node.value)
+        for node in tree.body
+        if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name) and node.targets[0].id.isupper()
+    }
+    assert values["STEM"] == shown.stem
+    assert (tmp_path / f"{values['STEM']}.pvd").is_file()
+    temperatures = run.history.values[saved_times(run)]
+    assert values["LOW"] == pytest.approx(temperatures.min(), abs=0.01)
+    assert values["HIGH"] == pytest.approx(temperatures.max(), abs=0.01)
+    assert values["REGIONS"] == list(run.study.section.regions)
+    assert values["TITLE"] == run.study.title
+    assert ("Reflect" in ast.unparse(tree)) == run.study.section.half

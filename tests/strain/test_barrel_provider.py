@@ -159,7 +159,7 @@ def test_interpolation_keeps_to_the_region() -> None:
     """A step between two regions stays a step; constants stay constants; further axes are carried along."""
     mesh = skfem.MeshQuad.init_tensor([1.0, 1.1, 1.2], [0.0, 0.1]).with_subdomains({"a": [0], "b": [1]})
     body = Body(mesh, {name: RegionMaterial(neo_hookean(1e6)) for name in "ab"}, {"top": "z"})
-    points = GaussPoints(body.rings)
+    points = GaussPoints.of(body.rings)
     left = int(np.argmin(body.rings.points[0].mean(axis=1)))
     values = np.zeros((3, 2, 9))
     values[:, left] = np.array([[1.0], [2.0], [3.0]])

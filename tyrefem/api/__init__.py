@@ -7,9 +7,12 @@ named parameters, so that completion shows them; None as a default leaves the ch
 from tyrefem.api.comparison import Comparison
 from tyrefem.api.design import Design
 from tyrefem.api.diagnosis import Diagnosis, ExperimentPlan
+from tyrefem.api.field import SectionField
 from tyrefem.api.identification import Identification, identify
 from tyrefem.api.life import Life
+from tyrefem.api.load import load
 from tyrefem.api.mechanics import ForcesOverSlip, ForceTable, LoadedTyre, NaturalModes, RollingWheel
+from tyrefem.api.record import Record
 from tyrefem.api.result import Campaign, Result
 from tyrefem.api.section import section_from_size
 from tyrefem.api.studies import Study, study
@@ -27,10 +30,13 @@ __all__ = [
     "Life",
     "LoadedTyre",
     "NaturalModes",
+    "Record",
     "Result",
     "RollingWheel",
+    "SectionField",
     "Study",
     "identify",
+    "load",
     "section_from_size",
     "study",
     "with_verbs",

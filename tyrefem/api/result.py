@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, overload
 
+from tyrefem.api.field import SectionField
 from tyrefem.api.verbs import with_verbs
 from tyrefem.simulation import result
 from tyrefem.sweep import campaign
 
 if TYPE_CHECKING:
+    import xarray
+    from matplotlib.axes import Axes
+
     from tyrefem.measured.cases import Case
 
 
 class Result(result.ResultData):
-    """Result of a run, with methods to write and plot it."""
+    """Result of a run, with methods to write and plot it. `tyrefem.load` gives it back from its folder."""
 
     def summary(self) -> dict[str, Any]:
         """Contents of `summary.json`: inputs, versions, mesh, tolerance and main results."""
@@ -22,17 +26,77 @@ class Result(result.ResultData):
 
         return summary(self)
 
+    def field(self, time: float | None = None) -> SectionField:
+        """The temperatures at the reading nearest to a time, s; None: the last.
+
+        Raises
+        ------
+        InputError : a time outside the run.
+        """
+        return SectionField(self, self.reading_at(time))
+
+    @overload
+    def plot(
+        self,
+        folder: None = None,
+        *,
+        picture: str = "temperature",
+        time: float | None = None,
+        axes: Axes | None = None,
+    ) -> Axes: ...
+
+    @overload
+    def plot(self, folder: str | Path) -> list[Path]: ...
+
+    def plot(
+        self,
+        folder: str | Path | None = None,
+        *,
+        picture: str = "temperature",
+        time: float | None = None,
+        axes: Axes | None = None,
+    ) -> Axes | list[Path]:
+        """Draw a picture on matplotlib axes, and return the axes; with a folder write the standard pictures as PNG.
+
+        Parameters
+        ----------
+        folder : for the files; returns their paths.
+        picture : "temperature" of the section, "histories" of the sensors, or "heat" of the whole tyre over time.
+        time : s; None: the last. Histories and heat end there. axes : None: those of a new figure.
+
+        Raises
+        ------
+        InputError : no such picture; a time outside the run; the folder cannot be written.
+        """
+        if folder is not None:
+            from tyrefem.reports.figures import write_pictures
+
+            return write_pictures(self, Path(folder))
+        from tyrefem.reports.figures.on_axes import draw
+
+        return draw(self, picture, time, axes)
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Readings, temperatures at the nodes, heat and contained air over time, with units (CF conventions).
+
+        Raises
+        ------
+        MissingLibraryError : xarray is not installed.
+        """
+        from tyrefem.reports.datasets import run_dataset
+
+        return run_dataset(self)
+
+    def to_pyvista(self, time: float | None = None, *, revolved: bool = False) -> Any:
+        """A pyvista grid at the reading nearest to a time, s (None: the last): see `SectionField.to_pyvista`."""
+        return self.field(time).to_pyvista(revolved=revolved)
+
     def to_vtk(self, folder: str | Path, *, revolved: bool = False) -> Path:
-        """Write ``<name>.pvd`` and a .vtu per saved time: regions, T, heat source, strain energy."""
+        """Write ``<name>.pvd``, a .vtu per saved time (regions, T, heat source, strain energy), and ``<name>.py``,
+        which shows them in ParaView; return the .pvd."""
         from tyrefem.reports.vtk import write_series
 
         return write_series(self, Path(folder), revolved=revolved)
-
-    def plot(self, folder: str | Path) -> list[Path]:
-        """Write the standard pictures as PNG files."""
-        from tyrefem.reports.figures import write_pictures
-
-        return write_pictures(self, Path(folder))
 
     def report(self, path: str | Path) -> Path:
         """Write one self-contained HTML report."""
@@ -40,11 +104,14 @@ class Result(result.ResultData):
 
         return write_report(self, Path(path))
 
-    def save(self, folder: str | Path) -> Path:
-        """Write readings, extremes and heat budget as CSV, and ``summary.json``."""
+    def save(self, folder: str | Path, *, parquet: bool = False) -> Path:
+        """Write readings, extremes and heat budget as CSV, ``summary.json``, and ``result.npz`` for `tyrefem.load`.
+
+        ``parquet``: the tables also as Parquet, with their units in the columns' metadata.
+        """
         from tyrefem.reports.run_files import write_tables
 
-        return write_tables(self, Path(folder))
+        return write_tables(self, Path(folder), parquet=parquet)
 
 
 class Campaign(campaign.CampaignData):

@@ -35,6 +35,7 @@ def run(
     pictures: Annotated[bool, typer.Option(help="Draw the PNG pictures and the HTML report.")] = True,
     vtk: Annotated[bool, typer.Option(help="Write the .pvd and .vtu files.")] = True,
     revolved: Annotated[bool, typer.Option("--revolved", help="Write the VTK files of the whole ring too.")] = False,
+    parquet: Annotated[bool, typer.Option("--parquet", help="Write the tables as Parquet files too.")] = False,
     force: ForceOption = False,
 ) -> None:
     """Simulate a study: temperatures, heat budget, rolling resistance, VTK, pictures and a report.
@@ -56,11 +57,11 @@ def run(
             _campaign(campaign, folder, pictures, vtk, revolved)
     else:
         with results_folder(place, "run", run_files(loaded), inputs=tables, force=force) as folder:
-            _single(loaded, folder, pictures, vtk, revolved)
+            _single(loaded, folder, pictures, vtk, revolved, parquet)
         answer_with(folder / "summary.json")
 
 
-def _single(study: Study, folder: Path, pictures: bool, vtk: bool, revolved: bool) -> None:
+def _single(study: Study, folder: Path, pictures: bool, vtk: bool, revolved: bool, parquet: bool) -> None:
     from tyrefem.simulation.estimate import RunEstimate
 
     warned = warn(study.warnings)
@@ -71,7 +72,7 @@ def _single(study: Study, folder: Path, pictures: bool, vtk: bool, revolved: boo
     tables = f"the tables up to {reached}" if reached else "the tables"
     with keeping(f"{tables} are in {folder}, pictures and VTK files are not complete"):
         with interruption_delayed():
-            result.save(folder)
+            result.save(folder, parquet=parquet)
         with stages() as tick:
             if vtk:
                 tick(f"{study.name}: VTK", 0, 0)

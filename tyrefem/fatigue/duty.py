@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from tyrefem.fatigue.growth import temperature_factor
 from tyrefem.materials.fatigue import Fatigue
+from tyrefem.mechanics.stored_cycles import solved
 
 if TYPE_CHECKING:
     from tyrefem.mechanics.cycle_schedule import CycleSchedule
@@ -62,13 +63,13 @@ class Duty:
         """The drive of a finished run at its temperatures; with ``plateau`` each phase at those of its end."""
         times = np.asarray(result.times)
         if not plateau:
-            return cls(result.tyre.schedule, times, lambda places: np.asarray(result.at(places)))
+            return cls(solved(result.tyre.schedule), times, lambda places: np.asarray(result.at(places)))
         starts = np.asarray(result.tyre.schedule.drive.starts)
         ends = np.append(starts[1:], result.tyre.schedule.drive.end)
         last = np.searchsorted(times, ends - 1e-9)
         phase = np.clip(np.searchsorted(starts, times[:-1], side="right") - 1, 0, len(starts) - 1)
         at_ends = np.append(last[phase], last[-1])
-        return cls(result.tyre.schedule, times, lambda places: np.asarray(result.at(places))[at_ends])
+        return cls(solved(result.tyre.schedule), times, lambda places: np.asarray(result.at(places))[at_ends])
 
     @classmethod
     def at_temperature(cls, schedule: CycleSchedule, temperature: float) -> Duty:

@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -31,13 +32,31 @@ def load(reference: object, *, near: Path | None = None, half: bool = True) -> S
     >>> round(section.line.crown_radius, 5)
     0.09144
     """
+    return load_written(reference, near=near, half=half)[0]
+
+
+#: A section's card as read, with changes; its file; its name.
+WrittenSection = tuple[dict[str, Any], Path, str]
+
+
+def load_written(reference: object, *, near: Path | None = None, half: bool = True) -> tuple[Section, WrittenSection]:
+    """`load`, with the card's data as read, its file and its name."""
     data, path, name = load_card("section", reference, near)
     card = SectionCard.check(data, file=path)
     try:
         _check_nominal_width(reference, card, near)
-        return build(card, name=name, half=half)
+        return build(card, name=name, half=half), (data, path, name)
     except InputError as error:
         raise error.within(file=path) from None
+
+
+def section_of(written: WrittenSection, *, half: bool = True) -> Section:
+    """The section of a card's data, as `load_written` gives them."""
+    data, path, name = written
+    try:
+        return build(SectionCard.check(data, file=path), name=name, half=half)
+    except InputError as error:
+        raise error if error.file else error.within(file=path) from None
 
 
 def _check_nominal_width(reference: object, card: SectionCard, near: Path | None) -> None:

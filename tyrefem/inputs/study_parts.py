@@ -14,10 +14,12 @@ from tyrefem.inputs.drive_table import as_written
 from tyrefem.inputs.sensor_places import sensor_places
 from tyrefem.inputs.study_card import StudyCard
 from tyrefem.inputs.study_materials import StudyMaterials
+from tyrefem.materials.card import MaterialCard
 from tyrefem.sizes import completed_materials
 
 if TYPE_CHECKING:
     from tyrefem.geometry import Section
+    from tyrefem.geometry.builder import WrittenSection
 
 #: Worn sections, by new section and wear; studies with the same new section share the worn section.
 _WORN: Cache[Section] = Cache(size=32)
@@ -39,6 +41,8 @@ class StudyParts(Brief):
     section: Section
     materials: StudyMaterials
     sensor_places: Mapping[str, tuple[float, float]]
+    #: The section's card as read.
+    section_card: WrittenSection
     temperatures: Mapping[str, float] | None = None
 
     @classmethod
@@ -59,9 +63,9 @@ class StudyParts(Brief):
             # In another section, cords may not fit and sensors may be outside.
             like = None
         if like is not None and card.mesh.section == like.card.mesh.section:
-            new_section = like.new_section
+            new_section, section_card = like.new_section, like.section_card
         else:
-            new_section = _section(data["section"], card, folder, file)
+            new_section, section_card = _section(data["section"], card, folder, file)
         section = _worn(new_section, card)
         materials = StudyMaterials.read(
             completed(data["section"], data["materials"], file),
@@ -75,7 +79,33 @@ class StudyParts(Brief):
             places = like.sensor_places
         else:
             places = sensor_places(card.sensors, new_section, file)
-        return cls(data, file, folder, card, new_section, section, materials, places)
+        return cls(data, file, folder, card, new_section, section, materials, places, section_card)
+
+    @classmethod
+    def of_cards(
+        cls,
+        data: Mapping[str, Any],
+        file: Path | None,
+        folder: Path | None,
+        section_card: WrittenSection,
+        written: Mapping[str, tuple[dict[str, Any], Path]],
+    ) -> StudyParts:
+        """The parts from cards as they were read at another time: ``written`` as in `StudyMaterials`.
+
+        Raises
+        ------
+        InputError : the study or a card has an error: file, field, what is allowed.
+        """
+        from tyrefem.geometry.builder import section_of
+
+        card = StudyCard.check(data, file)
+        new_section = _full(section_of(section_card), card)
+        cards = {region: MaterialCard.check(content, path) for region, (content, path) in written.items()}
+        references = completed(data["section"], data["materials"], file)
+        materials = StudyMaterials(references, folder, cards, dict(written))
+        places = sensor_places(card.sensors, new_section, file)
+        section = _worn(new_section, card)
+        return cls(data, file, folder, card, new_section, section, materials, places, section_card)
 
     def warmed(self, temperatures: Mapping[str, float]) -> StudyParts:
         """The same parts with moduli at given mean temperatures of the regions, degC."""
@@ -88,7 +118,7 @@ class StudyParts(Brief):
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickle the data, not the card, because a user's effect is in no importable module."""
         sections = (self.new_section, self.section)
-        read = (self.materials, self.sensor_places, self.temperatures)
+        read = (self.materials, self.sensor_places, self.section_card, self.temperatures)
         return _opened, (self.data, self.file, self.folder, *sections, *read)
 
 
@@ -112,14 +142,20 @@ def completed(section: object, materials: Mapping[str, Any], file: Path | None) 
         raise error if error.file else error.within(field="section", file=file) from None
 
 
-def _section(reference: object, card: StudyCard, folder: Path | None, file: Path | None) -> Section:
-    from tyrefem.geometry import load
+def _section(
+    reference: object, card: StudyCard, folder: Path | None, file: Path | None
+) -> tuple[Section, WrittenSection]:
+    from tyrefem.geometry.builder import load_written
 
     try:
-        built = load(reference, near=folder)
+        built, written = load_written(reference, near=folder)
     except InputError as error:
         raise error if error.file else error.within(field="section", file=file) from None
-    return built.as_full() if card.mesh.section == "full" else built
+    return _full(built, card), written
+
+
+def _full(section: Section, card: StudyCard) -> Section:
+    return section.as_full() if card.mesh.section == "full" else section
 
 
 def _worn(section: Section, card: StudyCard) -> Section:

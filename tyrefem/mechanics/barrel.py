@@ -65,7 +65,7 @@ class Barrel:
     @functools.cached_property
     def energies(self) -> PointEnergies:
         """The energies without the tyre."""
-        return PointEnergies(self.zones, GaussPoints(self.tyre.body.rings), self.density[None])
+        return PointEnergies(self.zones, GaussPoints.of(self.tyre.body.rings), self.density[None])
 
     def energy_density(self, zone: str, points: Array) -> Array:
         """U, J/m3, at points (2, n) in (r, z) of a region of the undeformed section."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -37,13 +37,15 @@ Weights = tuple[tuple[int, int, float], ...]
 class CycleSchedule(Brief, PickledFields):
     """The strain cycles of a drive: for each phase the load cases at ``knots`` fractions of it.
 
-    Between knots the strain energy is interpolated linearly in time.
+    Between knots the strain energy is interpolated linearly in time. ``warmth``: mean temperatures of the regions for
+    the moduli of every strain cycle, degC; None, or no entry at all: moduli as in the cards.
     """
 
     drive: Drive
     knots: tuple[tuple[float, ...], ...]
     cases: tuple[tuple[LoadCase, ...], ...]
     cycles: tuple[tuple[StrainCycle, ...], ...]
+    warmth: tuple[tuple[Mapping[str, float] | None, ...], ...] = ()
 
     def weights(self, time: float) -> Weights:
         """(phase, knot, weight) of the load cases that are mixed at a time."""

@@ -42,18 +42,25 @@ class GaussPoints:
     >>> import skfem
     >>> from tyrefem.mechanics.solid.elements import Rings
     >>> mesh = skfem.MeshQuad.init_tensor([1.0, 1.1, 1.2], [0.0, 0.1]).with_subdomains({"rubber": np.arange(2)})
-    >>> points = GaussPoints(Rings(mesh))
+    >>> points = GaussPoints.of(Rings(mesh))
     >>> points.interpolate(np.full((2, 9), 3.0), "rubber", np.array([[1.05], [0.02]])).round(9).tolist()
     [3.0]
     """
 
-    rings: Rings
+    #: (2, n_elements, n_points) in (r, z) of the undeformed section, m; region -> its elements.
+    points: Array
+    members: Mapping[str, Array]
     _trees: dict[str, Any] = field(default_factory=dict, init=False, repr=False)
+
+    @classmethod
+    def of(cls, rings: Rings) -> GaussPoints:
+        """The Gauss points of a mesh."""
+        return cls(rings.points, rings.mesh.subdomains)
 
     def interpolate(self, values: Array, region: str, points: Array) -> Array:
         """(..., n) values (..., n_elements, n_points) at points (2, n) in (r, z) of the undeformed section: the mean of
         the four nearest Gauss points of the region, weighted with 1 / distance^2."""
-        members = self.rings.mesh.subdomains[region]
+        members = self.members[region]
         region_values = values[..., members, :].reshape(*values.shape[:-2], -1)
         count = min(NEAREST, region_values.shape[-1])
         distance, nearest = self._tree(region).query(np.asarray(points, dtype=float).T, k=count)
@@ -66,8 +73,7 @@ class GaussPoints:
         if region not in self._trees:
             from scipy.spatial import cKDTree
 
-            members = self.rings.mesh.subdomains[region]
-            self._trees[region] = cKDTree(self.rings.points[:, members].reshape(2, -1).T)
+            self._trees[region] = cKDTree(self.points[:, self.members[region]].reshape(2, -1).T)
         return self._trees[region]
 
 
@@ -189,7 +195,7 @@ class FiniteElements:
     @functools.cached_property
     def energies(self) -> PointEnergies:
         """The energies without the tyre."""
-        return PointEnergies(self.zones, GaussPoints(self.tyre.body.rings), self.densities, self.friction)
+        return PointEnergies(self.zones, GaussPoints.of(self.tyre.body.rings), self.densities, self.friction)
 
     @property
     def friction(self) -> FrictionRings | None:

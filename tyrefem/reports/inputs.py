@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from tyrefem.materials.elasticity import Cords
     from tyrefem.materials.properties import Softening
     from tyrefem.materials.strain_dependence import StrainDependence
-    from tyrefem.mechanics.finite_elements import FiniteElements
+    from tyrefem.mechanics.stored_cycles import PressedCycle
 
 
 def material_rows(study: StudyData) -> tuple[list[dict[str, Any]], list[str]]:
@@ -140,7 +140,7 @@ def boundary_rows(study: StudyData) -> list[list[str]]:
     return rows
 
 
-def mechanics_rows(study: StudyData, cycle: FiniteElements | None = None) -> list[list[str]]:
+def mechanics_rows(study: StudyData, cycle: PressedCycle | None = None) -> list[list[str]]:
     """Name and value of every setting of strain and load; ``cycle``: a strain cycle by finite elements of the run."""
     mechanics = study.card.mechanics
     law, energy = mechanics.load_law, mechanics.energy if mechanics.strain == "given" else None
@@ -177,7 +177,7 @@ def _load(study: StudyData) -> list[str]:
     return ["load and deflection", words]
 
 
-def _motion(study: StudyData, cycle: FiniteElements | None) -> list[list[str]]:
+def _motion(study: StudyData, cycle: PressedCycle | None) -> list[list[str]]:
     """Row on the footprint's motion, with what a linear one leaves out; none if the law does not press the tyre."""
     if not strain_law(study).presses:
         return []

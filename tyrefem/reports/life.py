@@ -14,7 +14,7 @@ from tyrefem.fatigue.places import FailurePlace, first_places
 from tyrefem.interruption import keeping
 from tyrefem.output import atomic_folder, versions, write_json
 from tyrefem.reports.figures.style import png
-from tyrefem.reports.vtk import add_fields
+from tyrefem.reports.vtu import VtuFile
 
 if TYPE_CHECKING:
     from tyrefem.fatigue.life import LifeData
@@ -111,8 +111,6 @@ def write_vtk(life: LifeData, path: Path) -> None:
     Cell data: ``life_km`` and ``log10_life_km`` (NaN: no ``[fatigue]``), ``peak_J_m3``, ``valley_J_m3``,
     ``tearing_energy_J_m2``, ``temperature_degC``, ``normal`` of the plane in (x, y, circumference), ``region``.
     """
-    import meshio
-
     rings = life.rings
     corners = rings.element_nodes[:, :4]
     at = np.arange(len(life.km)), life.typical
@@ -130,14 +128,9 @@ def write_vtk(life: LifeData, path: Path) -> None:
             "temperature_degC": life.temperatures[at],
         }
     normal = life.normals[at][:, [1, 0, 2]]
-    mesh = meshio.Mesh(
-        np.stack([rings.nodes[1], rings.nodes[0], np.zeros(rings.n_nodes)], axis=1),
-        [("quad", np.ascontiguousarray(corners[:, ::-1].astype(np.int32)))],
-        cell_data={name: [np.asarray(values)] for name, values in fields.items()}
-        | {"normal": [normal], "region": [region]},
-    )
-    meshio.write(path, mesh, file_format="vtu", binary=True)
-    add_fields(path, {f"region_id_{name}": number for number, name in enumerate(names, start=1)})
+    points = np.stack([rings.nodes[1], rings.nodes[0], np.zeros(rings.n_nodes)], axis=1)
+    cells = {name: np.asarray(values) for name, values in fields.items()} | {"normal": normal, "region": region}
+    VtuFile(points, corners[:, ::-1], "quad").write(path, cell_data=cells, names={"region": names})
 
 
 def words(life: LifeData, shifts: Sequence[LifeShift] = (), places: Sequence[FailurePlace] | None = None) -> str:

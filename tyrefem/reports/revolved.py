@@ -11,9 +11,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.output import atomic_path
 from tyrefem.reports.figures.cells import parts_of
-from tyrefem.reports.vtk import add_fields
+from tyrefem.reports.vtu import VtuFile
 
 if TYPE_CHECKING:
     from tyrefem.mechanics.footprint.loss import RevolutionLoss
@@ -211,43 +210,36 @@ class RevolvedSection:
         return self.of_cells((self._round(values),))
 
     @cached_property
-    def regions(self) -> tuple[Array, dict[str, int]]:
-        """(n_cells,) region numbers from 1, and the number of each ``region_id_<name>``."""
+    def regions(self) -> tuple[Array, list[str]]:
+        """(n_cells,) region numbers from 1, and the regions' names in that order."""
         body = self.pressed.tyre.body
-        numbers, names = np.zeros(body.mesh.t.shape[1], dtype=np.int32), {}
-        for number, region in enumerate(self.pressed.study.section.regions, start=1):
+        numbers, names = np.zeros(body.mesh.t.shape[1], dtype=np.int32), list(self.pressed.study.section.regions)
+        for number, region in enumerate(names, start=1):
             numbers[np.asarray(body.mesh.subdomains[region])] = number
-            names[f"region_id_{region}"] = number
         return self.of_elements(numbers), names
 
     def write(self, path: Path) -> Path:
         """Write a compressed .vtu in single precision, completely or not at all.
 
         Point data ``displacement_m`` (from the tyre without pressure and load) and `point_data`; cell data
-        ``region``, ``strain_energy_J_m3``, ``loss_J_m3`` (per revolution) and `cell_data`; field data
-        ``region_id_<name>``.
+        ``region``, ``strain_energy_J_m3``, ``loss_J_m3`` (per revolution) and `cell_data`; a comment has the
+        regions' names.
 
         Raises
         ------
         InputError : the file cannot be written.
         """
-        import meshio
-
         moved, points = self.displacements
         regions, names = self.regions
         loss = {} if self.loss is None else {"loss_J_m3": self.loss}
         cells = {"strain_energy_J_m3": self.strain_energy, **loss, **self.cell_data}
         values = {"displacement_m": moved, **self.point_data}
-        mesh = meshio.Mesh(
-            points.astype(np.float32),
-            [("hexahedron", self.cells)],
-            point_data={name: _single(field) for name, field in values.items()},
-            cell_data={"region": [regions], **{name: [_single(field)] for name, field in cells.items()}},
+        return VtuFile(points.astype(np.float32), self.cells, "hexahedron").write(
+            path,
+            {name: _single(field) for name, field in values.items()},
+            {"region": regions, **{name: _single(field) for name, field in cells.items()}},
+            {"region": names},
         )
-        with atomic_path(path) as temporary:
-            meshio.write(temporary, mesh, file_format="vtu", binary=True)
-            add_fields(temporary, names)
-        return path
 
 
 def _single(values: Array) -> Array:

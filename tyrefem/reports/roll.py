@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.interruption import keeping
-from tyrefem.output import atomic_folder, atomic_path, write_json
+from tyrefem.output import atomic_folder, write_json
+from tyrefem.reports.vtu import VtuFile
 
 if TYPE_CHECKING:
     from tyrefem.mechanics.rolling.roll import RolledStudy
@@ -63,8 +64,6 @@ def write_contact(rolled: RolledStudy, path: Path) -> Path:
     ------
     InputError : the file cannot be written.
     """
-    import meshio
-
     state = rolled.state
     angles, across = state.pressure.shape
     number = np.arange(angles * across).reshape(angles, across)
@@ -73,10 +72,9 @@ def write_contact(rolled: RolledStudy, path: Path) -> Path:
     def flat(vectors: Array) -> Array:
         return np.column_stack([vectors.reshape(-1, 2), np.zeros(angles * across)])
 
-    mesh = meshio.Mesh(
-        state.places.T,
-        [("quad", quads)],
-        point_data={
+    return VtuFile(state.places.T, quads, "quad").write(
+        path,
+        {
             "pressure_Pa": state.pressure.ravel(),
             "traction_Pa": flat(state.traction),
             "sliding_m_s": flat(state.sliding_velocity),
@@ -84,9 +82,6 @@ def write_contact(rolled: RolledStudy, path: Path) -> Path:
             "friction_power_W": state.power_map.ravel(),
         },
     )
-    with atomic_path(path) as temporary:
-        meshio.write(temporary, mesh, file_format="vtu", binary=True)
-    return path
 
 
 def write_files(rolled: RolledStudy, folder: Path, *, pictures: bool = True, vtk: bool = True) -> None:

@@ -11,7 +11,7 @@ from tyrefem.output import atomic_path, versions, write_json
 
 if TYPE_CHECKING:
     from tyrefem.inputs.study import StudyData
-    from tyrefem.mechanics.finite_elements import FiniteElements
+    from tyrefem.mechanics.stored_cycles import PressedCycle
     from tyrefem.simulation.result import ResultData
 
 
@@ -25,17 +25,16 @@ def of_run(result: ResultData) -> tuple[PublishedComparison, ...]:
     return compared(result.study.card.published, values)
 
 
-def loaded_cycle(result: ResultData) -> FiniteElements | None:
+def loaded_cycle(result: ResultData) -> PressedCycle | None:
     """The strain cycle under the last load of the first loaded phase; None without finite elements or without load."""
-    from tyrefem.mechanics.finite_elements import FiniteElements
-
     for cycle in (cycles[-1] for cycles in result.tyre.schedule.cycles):
-        if isinstance(cycle, FiniteElements) and cycle.footprint is not None:
-            return cycle
+        if getattr(cycle, "footprint", None) is not None:
+            pressed: PressedCycle = cycle  # type: ignore[assignment]
+            return pressed
     return None
 
 
-def footprint_summary(cycle: FiniteElements | None) -> dict[str, Any]:
+def footprint_summary(cycle: PressedCycle | None) -> dict[str, Any]:
     """Numbers of a strain cycle's footprint, SI; for a linear one also what its strains leave out."""
     if cycle is None or cycle.footprint is None:
         return {}
@@ -137,16 +136,22 @@ def run_files(study: StudyData) -> list[str]:
     """The files that a run of ``study`` may write, relative to its folder."""
     from tyrefem.reports.figures import PICTURES
     from tyrefem.reports.vtk import file_names
+    from tyrefem.simulation.stored_result import FILE
 
-    return [*TABLES, "study.toml", "report.html", *(f"pictures/{name}" for name in PICTURES),
+    columns = [name.replace(".csv", ".parquet") for name in TABLES]
+    return [*TABLES, *columns, FILE, "study.toml", "report.html", *(f"pictures/{name}" for name in PICTURES),
             *(f"vtk/{name}" for name in file_names(study.name))]  # fmt: skip
 
 
-def write_tables(result: ResultData, folder: Path) -> Path:
-    """``readings.csv``, ``extremes.csv``, ``heat_budget.csv``, ``heat_power.csv``, ``study.toml``, ``summary.json``.
+def write_tables(result: ResultData, folder: Path, *, parquet: bool = False) -> Path:
+    """``readings.csv``, ``extremes.csv``, ``heat_budget.csv``, ``heat_power.csv``, ``study.toml``, ``summary.json``,
+    and ``result.npz``, from which the result can be made again.
 
-    With slip also ``sliding.csv``: the contact over time.
+    With slip also ``sliding.csv``: the contact over time. ``parquet``: the tables as Parquet files, too.
     """
+    from tyrefem.reports.parquet import write_parquet
+    from tyrefem.simulation.stored_result import FILE, write_result
+
     folder.mkdir(parents=True, exist_ok=True)
     readings = result.readings.rename(columns=lambda name: "time [s]" if name == "time_s" else f"{name} [degC]")
     readings["contained-air pressure [kPa]"] = result.gas_pressure / 1e3
@@ -163,5 +168,10 @@ def write_tables(result: ResultData, folder: Path) -> Path:
     for name, table in tables.items():
         with atomic_path(folder / name) as temporary:
             table.to_csv(temporary, index=False, float_format="%.6g")
+        if parquet:
+            # Full digits, and the columns' names of the Python table.
+            whole = result.readings if table is readings else table
+            write_parquet(whole, (folder / name).with_suffix(".parquet"))
+    write_result(result, folder / FILE)
     result.study.save(folder / "study.toml")
     return write_json(summary(result), folder / "summary.json")

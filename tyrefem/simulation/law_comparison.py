@@ -71,7 +71,7 @@ class LawOutcome:
         from tyrefem.mechanics.footprint.strain_harmonics import StrainHarmonics
 
         cycle: Any = self.cycle
-        return GaussPoints(cycle.tyre.body.rings), StrainHarmonics(cycle.footprint).largest_energy()
+        return GaussPoints.of(cycle.tyre.body.rings), StrainHarmonics(cycle.footprint).largest_energy()
 
     @property
     def temperatures(self) -> dict[str, float]:

@@ -14,6 +14,7 @@ from tyrefem.boundaries.contained_air import ATMOSPHERE, KELVIN
 from tyrefem.brief import SHOWN, Brief
 from tyrefem.conduction.field import History
 from tyrefem.conduction.points import OutsideMeshError, as_points
+from tyrefem.errors import InputError
 from tyrefem.geometry.meshing.sagitta import snapped
 from tyrefem.geometry.wall import inside_mesh, wall_of
 from tyrefem.simulation.effect_states import StateHistory
@@ -119,6 +120,20 @@ class ResultData(Brief):
             places[error.numbers] = snapped(self.tyre.mesh, places[error.numbers])
             return np.asarray(self.history.at(places))
 
+    def reading_at(self, time: float | None) -> int:
+        """Number of the reading nearest to a time, s; None: the last.
+
+        Raises
+        ------
+        InputError : a time before the first or after the last reading.
+        """
+        if time is None:
+            return len(self.times) - 1
+        first, last = float(self.times[0]), float(self.times[-1])
+        if not first - 1e-9 <= time <= last * (1 + 1e-9):
+            raise InputError(f"the run has times from {first:g} to {last:g} s, not {time:g} s", field="time")
+        return int(np.argmin(np.abs(self.times - time)))
+
     def temperature_field(self, i: int = -1) -> Callable[[Array], Array]:
         """T(x), degC, at ``times[i]``, for places (2, n) in (r, z), m; see `tyrefem.mechanics.solid.inflation`."""
         return lambda x: self.history.field(i).at(self._inside(np.asarray(x).T))
@@ -142,13 +157,18 @@ class ResultData(Brief):
 
     @functools.cached_property
     def readings(self) -> pd.DataFrame:
-        """``time_s``, one column per sensor (lag applied), the contained air, and a lumped rim; degC."""
+        """``time_s``, one column per sensor (lag applied), the contained air, and a lumped rim; degC.
+
+        ``readings.attrs["units"]``: column -> unit.
+        """
         import pandas as pd
 
         lumped = {GAS: self.gas_temperature}
         if self.rim_temperature is not None:
             lumped[RIM] = self.rim_temperature
-        return pd.DataFrame({"time_s": self.times, **self.recorded, **lumped})
+        table = pd.DataFrame({"time_s": self.times, **self.recorded, **lumped})
+        table.attrs["units"] = {name: "s" if name == "time_s" else "degC" for name in table}
+        return table
 
     @functools.cached_property
     def recorded(self) -> dict[str, Array]:

@@ -155,7 +155,7 @@ class WarmCycles:
 
     def schedule(self) -> CycleSchedule:
         """Load cases and strain cycles for a run; a constant phase has one strain cycle, as without feedback."""
-        fractions, cases, cycles = [], [], []
+        fractions, cases, cycles, warmth = [], [], [], []
         for number, knots in enumerate(self.knots):
             kept = [self._kept[number, place] for place in range(len(knots))]
             same = all(
@@ -166,7 +166,8 @@ class WarmCycles:
             fractions.append(knots)
             cases.append(tuple(solved_case(warm_cycle.cycle, warm_cycle.case) for warm_cycle in kept))
             cycles.append(tuple(warm_cycle.cycle for warm_cycle in kept))
-        return CycleSchedule(self.study.card.drive, tuple(fractions), tuple(cases), tuple(cycles))
+            warmth.append(tuple(warm_cycle.moment.regions if self.softening else None for warm_cycle in kept))
+        return CycleSchedule(self.study.card.drive, tuple(fractions), tuple(cases), tuple(cycles), tuple(warmth))
 
     def _places(self) -> list[tuple[int, int]]:
         return [(number, place) for number, knots in enumerate(self.knots) for place in range(len(knots))]

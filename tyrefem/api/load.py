@@ -1,0 +1,72 @@
+"""Results from the folders that commands have written."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from tyrefem.api.record import Record, read_json
+from tyrefem.api.result import Result
+from tyrefem.api.studies import Study
+from tyrefem.api.verbs import with_verbs
+from tyrefem.errors import InputError, nearest
+from tyrefem.output import SUMMARY
+from tyrefem.output.folder import COMMAND, COMPLETE
+
+
+def load(folder: str | Path) -> Result | Record:
+    """The result of a folder: of `tyrefem run` and `Result.save` the `Result`, of other commands a `Record`.
+
+    A `Result` from a folder is the one of the run: readings, temperatures, heat budget, pictures, report, VTK, study.
+    Cards of the study are those of the run, though their files have changed since. No code of the files is run.
+
+    Parameters
+    ----------
+    folder : folder of results, or the file ``result.npz`` in it.
+
+    Raises
+    ------
+    InputError : no such folder; it holds no results, results of another format, or damaged ones.
+
+    >>> import tempfile, tyrefem as tf
+    >>> run = tf.study("nasa-22x5.5-8pr", {"mesh.size": "12 mm", "drive.duration": "60 s"}).run()
+    >>> place = tempfile.mkdtemp()
+    >>> _ = run.save(place)
+    >>> again = tf.load(place)
+    >>> bool((abs(again.readings - run.readings) < 1e-8).all(axis=None)), again.study.title == run.study.title
+    (True, True)
+    """
+    from tyrefem.simulation.stored_result import FILE, read_result
+
+    place = Path(folder).expanduser()
+    if place.is_file() and place.name == FILE:
+        place = place.parent
+    if not place.is_dir():
+        raise InputError(f"no such folder of results{_near(place)}", file=place)
+    if (place / FILE).is_file():
+        return with_verbs(Result, read_result(place / FILE, Study))
+    if not (place / SUMMARY).is_file():
+        raise InputError(
+            f"is no folder of results: it has neither {FILE} nor {SUMMARY}; 'tyrefem run STUDY --out FOLDER' makes one",
+            file=place,
+        )
+    summary = read_json(place / SUMMARY)
+    command = summary.get(COMMAND)
+    cases = (place / "cases").is_dir() or (place / "campaign.csv").is_file()
+    if command == "run" and not cases:
+        raise InputError(
+            f"has no {FILE}: an older version wrote it, or the run was interrupted before its tables; run the study "
+            "again",
+            file=place,
+        )
+    if not isinstance(command, str):
+        raise InputError(f"is no folder of results: its {SUMMARY} names no command of tyrefem", file=place)
+    return Record(place, command, bool(summary.get(COMPLETE, True)))
+
+
+def _near(place: Path) -> str:
+    """The nearest folder beside it, as a hint; empty without any."""
+    try:
+        beside = [path.name for path in place.parent.iterdir() if path.is_dir()]
+    except OSError:
+        return ""
+    return nearest(place.name, beside) if beside else ""

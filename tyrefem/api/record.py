@@ -1,0 +1,126 @@
+"""A folder that a command other than `run` of one study has written: summary, tables, study."""
+
+from __future__ import annotations
+
+import functools
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tyrefem.api.studies import Study
+from tyrefem.brief import Brief
+from tyrefem.errors import InputError, nearest
+from tyrefem.output import SUMMARY
+from tyrefem.output.folder import BOOKKEEPING
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+#: Files of a command's main answer, in the order of search; then ``summary.json``.
+ANSWERS = ("verdict.json", "comparison.json", "plan.json", "press.json", "roll.json", "forces.json", "modes.json")
+#: Files of a study in such a folder.
+STUDIES = ("amended.toml", "study.toml")
+
+
+@dataclass(frozen=True, eq=False)
+class Record(Brief):
+    """What a command has written, read again. Made by `tyrefem.load`.
+
+    Parameters
+    ----------
+    folder : the folder. command : that wrote it, e.g. "diagnose". complete : False if it was interrupted.
+    """
+
+    folder: Path
+    command: str
+    complete: bool
+
+    def _title(self) -> str:
+        return f"of tyrefem {self.command}, {self.folder}"
+
+    def _facts(self) -> Mapping[str, Any]:
+        return {
+            "complete": str(self.complete),
+            **({"verdict": self.verdict} if self.verdict else {}),
+            "tables": ", ".join(self.names) or "none",
+            **({"page": self.page.name} if self.page else {}),
+            **({"cases": ", ".join(self.cases)} if self.cases else {}),
+        }
+
+    @functools.cached_property
+    def summary(self) -> dict[str, Any]:
+        """The command's answer: contents of ``verdict.json``, ``comparison.json``, or ``summary.json``.
+
+        Raises
+        ------
+        InputError : the file is damaged.
+        """
+        file = next((self.folder / name for name in (*ANSWERS, SUMMARY) if (self.folder / name).is_file()), None)
+        assert file is not None, "made of a folder with a summary"
+        return {key: value for key, value in read_json(file).items() if key not in BOOKKEEPING}
+
+    @property
+    def verdict(self) -> str:
+        """In a few words, where the command gives a verdict; else empty."""
+        verdict = self.summary.get("verdict", "")
+        return verdict if isinstance(verdict, str) else ""
+
+    @functools.cached_property
+    def names(self) -> tuple[str, ...]:
+        """Names of the tables."""
+        files = [file for kind in ("csv", "parquet") for file in self.folder.glob(f"*.{kind}")]
+        return tuple(sorted({file.stem for file in files}))
+
+    def table(self, name: str) -> pd.DataFrame:
+        """A table by name, from its Parquet file if there is one.
+
+        Raises
+        ------
+        InputError : no such table; the file cannot be read.
+        """
+        import pandas as pd
+
+        if name not in self.names:
+            raise InputError(f"has no table '{name}'{nearest(name, self.names)}", file=self.folder)
+        file = self.folder / f"{name}.parquet"
+        try:
+            return pd.read_parquet(file) if file.is_file() else pd.read_csv(file.with_suffix(".csv"))
+        except (OSError, ValueError) as error:
+            raise InputError(f"cannot be read: {error!s:.80}", file=self.folder / f"{name}.csv") from None
+
+    @functools.cached_property
+    def study(self) -> Study | None:
+        """The study of the folder, after a diagnosis the amended one; None: the folder has none."""
+        file = next((self.folder / name for name in STUDIES if (self.folder / name).is_file()), None)
+        return None if file is None else Study.load(file)
+
+    @property
+    def page(self) -> Path | None:
+        """The page for people; None: not drawn."""
+        pages = sorted(self.folder.glob("*.html"))
+        return pages[0] if pages else None
+
+    @functools.cached_property
+    def cases(self) -> tuple[str, ...]:
+        """Cases of a campaign whose results are here: `tyrefem.load` of ``folder / "cases" / name`` gives each."""
+        return tuple(sorted(file.parent.name for file in self.folder.glob("cases/*/result.npz")))
+
+
+def read_json(file: Path) -> dict[str, Any]:
+    """The table of a JSON file.
+
+    Raises
+    ------
+    InputError : the file cannot be read, or is damaged.
+    """
+    try:
+        data = json.loads(file.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise InputError(f"cannot be read: {error.strerror or error}", file=file) from None
+    except ValueError:
+        raise InputError("is damaged: run the command again", file=file) from None
+    if not isinstance(data, dict):
+        raise InputError("is damaged: run the command again", file=file)
+    return data
