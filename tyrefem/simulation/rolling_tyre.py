@@ -36,16 +36,20 @@ class RollingTyre(Surroundings):
     ``like``: another tyre, whose mesh (and so the operators assembled on it) is taken if the section is the same. It is
     not kept alive: parts that are not taken before it is gone are built anew.
     ``cycles``: strain cycles in place of those at the drive's own pressure and the cards' moduli.
+    ``parts``: the strain cycles and the mesh of this very tyre, computed before.
     ``near``: takes strain cycles of studies near this one from few solutions, also for tyres that are ``like`` this.
     """
 
     like: InitVar[RollingTyre | None] = None
     cycles: CycleSchedule | None = None
     near: NearbyCycles | None = None
+    parts: InitVar[tuple[CycleSchedule, TyreMesh] | None] = None
     _similar: weakref.ref[RollingTyre] | None = field(default=None, init=False, repr=False)
 
-    def __post_init__(self, like: RollingTyre | None) -> None:
+    def __post_init__(self, like: RollingTyre | None, parts: tuple[CycleSchedule, TyreMesh] | None) -> None:
         object.__setattr__(self, "_similar", None if like is None else weakref.ref(like))
+        if parts is not None:
+            self.__dict__["schedule"], self.__dict__["mesh"] = parts
 
     @property
     def similar(self) -> RollingTyre | None:

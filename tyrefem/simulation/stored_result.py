@@ -90,13 +90,10 @@ def read_result(path: Path, study_kind: type[StudyData] = StudyData) -> ResultDa
 
 def _result(data: Mapping[str, Any], arrays: Arrays, study_kind: type[StudyData]) -> ResultData:
     study = study_of(study_kind, data["study"])
-    tyre = RollingTyre(study)
     schedule = stored_cycles.restored(study, data["cycles"], arrays)
-    if data["feedback"] is not None:
-        # The problem of a study with feedback needs cycles at its temperatures.
-        object.__setattr__(tyre, "cycles", schedule)
-    tyre.__dict__["schedule"] = schedule
-    tyre.__dict__["mesh"] = _meshed(study, data["mesh"], arrays)
+    # The problem of a study with feedback needs cycles at its temperatures.
+    warmed = None if data["feedback"] is None else schedule
+    tyre = RollingTyre(study, cycles=warmed, parts=(schedule, _meshed(study, data["mesh"], arrays)))
     budget = _budget(data["budget"], arrays)
     history = History(
         tyre.problem.operators,
