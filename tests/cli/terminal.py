@@ -10,7 +10,9 @@ NASA = "nasa-22x5.5-8pr"
 #: A run short enough for a test.
 SHORT = ("--set", "drive.duration=10 s", "--set", "mesh.size=8 mm", "--set", "output.fields=2")
 BARE = ("--no-pictures", "--no-vtk")
-TABLES = {"readings.csv", "extremes.csv", "heat_budget.csv", "heat_power.csv", "study.toml", "summary.json"}
+TABLES = {
+    "readings.csv", "extremes.csv", "heat_budget.csv", "heat_power.csv", "study.toml", "summary.json", "result.npz",
+}  # fmt: skip
 
 
 def command(*arguments: str) -> list[str]:
