@@ -20,10 +20,15 @@ DEFAULTS = {"study": "nasa-22x5.5-8pr", "section": "nasa-22x5.5-8pr", "material"
 
 
 def new(
-    kind: Annotated[str, typer.Argument(help="study, section or material.")],
+    kind: Annotated[str, typer.Argument(help="study, section, material or tyre.")],
     name: Annotated[str, typer.Argument(help="Name of the new card: letters, digits, . _ -; or a tyre's size.")],
-    copy_of: Annotated[str | None, typer.Option("--from", help="Card to copy.", autocompletion=complete_names)] = None,
-    out: Annotated[Path | None, typer.Option("--out", help="The file to write, .toml.")] = None,
+    copy_of: Annotated[
+        str | None,
+        typer.Option("--from", help="Card to copy; of a tyre the study to scale.", autocompletion=complete_names),
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", help="The file to write, .toml; of a tyre the folder of both files.")
+    ] = None,
     rim: Annotated[str | None, typer.Option("--rim", help="Of a size: the rim's width, e.g. '6 in'.")] = None,
     load: Annotated[str | None, typer.Option("--load", help="Of a size: a load that it must carry.")] = None,
     pressure: Annotated[
@@ -34,7 +39,8 @@ def new(
 ) -> None:
     """Copy a study, section or material card into this folder under a new name, to be edited.
 
-    A section or study may be made from a tyre's size: `tyrefem new section 205/60R15 --rim "6 in"`.
+    A section or study may be made from a tyre's size: `tyrefem new section 205/60R15 --rim "6 in"`. `new tyre` scales
+    a study with its section to another size: `tyrefem new tyre 225/45R17 --from passenger-205-55r16`.
     """
     from tyrefem import library
     from tyrefem.output import atomic_path, place_of_output
@@ -42,10 +48,15 @@ def new(
     from tyrefem.schemas.line import schema_line, without_line
     from tyrefem.sizes import looks_like_size
 
-    if kind not in DEFAULTS:
-        raise InputError(f"no kind '{kind}'{nearest(kind, DEFAULTS)}")
+    if kind not in (*DEFAULTS, "tyre"):
+        raise InputError(f"no kind '{kind}'{nearest(kind, (*DEFAULTS, 'tyre'))}")
     of_size = {"rim_width": rim, "load": load, "pressure": pressure, **settings(changes)}
     of_size = {key: value for key, value in of_size.items() if value is not None}
+    if kind == "tyre":
+        from tyrefem.cli.new_tyre import new_tyre
+
+        new_tyre(name, copy_of, of_size, out, force=force)
+        return
     if kind != "material" and copy_of is None and looks_like_size(name):
         from tyrefem.cli.new_size import new_size
 

@@ -20,7 +20,7 @@ def section_text(drawn: Drawn, command: str) -> str:
     >>> "# rim_width" in text and "[[layers]]" in text
     True
     """
-    return "\n".join([*_head(drawn, command), "", *_tables(drawn.data), "", *_materials(drawn), ""])
+    return "\n".join([*_head(drawn, command), "", *table_lines(drawn.data), "", *_materials(drawn), ""])
 
 
 def study_text(drawn: Drawn, section: Mapping[str, Any] | str, speed: str) -> str:
@@ -73,7 +73,8 @@ def _materials(drawn: Drawn) -> Iterator[str]:
         yield f"# {_key(region)} = {_value(card)}"
 
 
-def _tables(data: Mapping[str, Any]) -> Iterator[str]:
+def table_lines(data: Mapping[str, Any]) -> Iterator[str]:
+    """Plain data as the lines of a TOML file: a table's values each on a line, what is below them inline."""
     for key, value in data.items():
         if isinstance(value, Mapping):
             yield ""

@@ -1,0 +1,88 @@
+"""`tyrefem new tyre 225/45R17 --from passenger-205-55r16`: a study and its section for another size."""
+
+from __future__ import annotations
+
+import os
+import shlex
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import typer
+
+from tyrefem.errors import InputError, nearest
+
+#: Kind of tyre -> shipped study of that kind.
+SHIPPED = {
+    "passenger": "passenger-205-55r16",
+    "truck": "truck-295-80r22.5",
+    "aircraft-bias": "nasa-22x5.5-8pr",
+    "aircraft-radial": "aircraft-radial",
+}
+
+
+def new_tyre(size: str, source: str | None, numbers: Mapping[str, Any], out: Path | None, *, force: bool) -> None:
+    """Write section and study of a size. ``source``: study; default: the shipped study of the kind.
+
+    Raises
+    ------
+    InputError : another kind of tyre, no such size or number, a study that cannot be built; the files exist.
+    """
+    from tyrefem import library
+    from tyrefem.api import study
+    from tyrefem.inputs.other_size import scaled_tyre
+    from tyrefem.interruption import interruption_delayed
+    from tyrefem.output import atomic_path, place_of_output
+    from tyrefem.output.file import results_file
+    from tyrefem.schemas.line import schema_line
+    from tyrefem.sizes import parse_size
+
+    kind = parse_size(size).kind
+    if source is None and kind not in SHIPPED:
+        message = f"no shipped study is of kind {kind}{nearest(kind, SHIPPED)}; or: tyrefem new study '{size}'"
+        raise InputError(message, field="--from")
+    first = study(source or SHIPPED[kind])
+    options = "".join(f" --set {key}={shlex.quote(str(value))}" for key, value in numbers.items())
+    command = f"tyrefem new tyre {shlex.quote(size)} --from {shlex.quote(str(source or SHIPPED[kind]))}{options}"
+    named = {key.removeprefix("section.").removeprefix("parameters."): value for key, value in numbers.items()}
+    tyre = scaled_tyre(first, size, named, command)
+    folder = out or Path()
+    files = {
+        folder / library.FOLDERS["section"] / f"{tyre.name}.toml": ("section", tyre.section),
+        folder / library.FOLDERS["study"] / tyre.name / "study.toml": ("study", tyre.study),
+    }
+    for target in files:
+        if os.path.lexists(target) and not force:
+            raise InputError("the file exists already; nothing was written; replace it with --force", file=target)
+    warnings = _checked(tyre.name, tyre.section, tyre.study)
+    for target in files:
+        place_of_output(target.parent)
+    with interruption_delayed():
+        for target, (card, text) in files.items():
+            with results_file(target, (".toml",), force=force), atomic_path(target) as temporary:
+                temporary.write_text(schema_line(card, target) + text, encoding="utf-8")
+            typer.echo(f"{target} written")
+    for sentence in tyre.notes.sentences:
+        typer.echo(f"  {sentence}")
+    for warning in warnings:
+        typer.echo(f"warning: {warning}", err=True)
+    shown = (folder / library.FOLDERS["study"] / tyre.name).as_posix()
+    typer.echo(f"then: tyrefem run {shlex.quote(shown)}")
+
+
+def _checked(name: str, section: str, study_text: str) -> tuple[str, ...]:
+    """Read both files as a user will, in a folder that is removed; returns the study's warnings."""
+    from tyrefem.api import study
+
+    with tempfile.TemporaryDirectory(prefix="tyrefem-") as temporary:
+        place = Path(temporary)
+        files = {place / "geometry" / f"{name}.toml": section, place / "studies" / name / "study.toml": study_text}
+        for file, text in files.items():
+            file.parent.mkdir(parents=True)
+            file.write_text(text, encoding="utf-8")
+        try:
+            made = study(place / "studies" / name)
+        except InputError as error:
+            raise InputError(f"this size makes no study: {error.message}", field=error.field) from None
+        return tuple(str(warning).replace(f"{place}{os.sep}", "") for warning in made.warnings)
