@@ -24,6 +24,7 @@ MORE = {
     "blind": ["--cases", "1"],
     "plan": ["--set", "plan.drives=2", "--set", "plan.sensors_most=0"],
     "export": ["--tolerance", "50 K"],
+    "explore": ["--vary", "drive.speed=10 mph:20 mph", "--tolerance", "15 K"],
     "rig layers": ["--most", "1"],
     "forces": [
         "--loads",

@@ -7,6 +7,7 @@ named parameters, so that completion shows them; None as a default leaves the ch
 from tyrefem.api.comparison import Comparison
 from tyrefem.api.design import Design
 from tyrefem.api.diagnosis import Diagnosis, ExperimentPlan
+from tyrefem.api.exploration import Exploration
 from tyrefem.api.field import SectionField
 from tyrefem.api.identification import Identification, identify
 from tyrefem.api.life import Life
@@ -24,6 +25,7 @@ __all__ = [
     "Design",
     "Diagnosis",
     "ExperimentPlan",
+    "Exploration",
     "ForceTable",
     "ForcesOverSlip",
     "Identification",

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from tyrefem.api.comparison import Comparison
 from tyrefem.api.design import Design
 from tyrefem.api.diagnosis import Diagnosis, ExperimentPlan
+from tyrefem.api.exploration import Exploration
 from tyrefem.api.verbs import given, with_verbs
 from tyrefem.inputs import study as studies
 
@@ -224,3 +225,35 @@ class StudyQuestions(studies.StudyData):
             progress=progress, settings=settings,
         )  # fmt: skip
         return with_verbs(Design, run_design_study(self, vary, **questions, **execution, **further))
+
+    def explore(
+        self,
+        vary: Mapping[str, Any] | None = None,
+        *,
+        limits: Mapping[str, Any] | None = None,
+        axes: tuple[str, str] | None = None,
+        tolerance: float | None = None,
+        scheduler: Scheduler | None = None,
+        progress: Progress | None = None,
+    ) -> Exploration:
+        """A page with sliders whose temperatures are computed in the browser, from a certified reduced model.
+
+        Parameters
+        ----------
+        vary : dotted name -> range, as in `sweep`; None: the study's ``[explore]``, else a box about its drive, rubbers
+            and films. limits : answer -> below, above. axes : the two numbers of the safe envelope.
+        tolerance : K, of every temperature in the certificate. scheduler : where the runs are done.
+        progress : called with (stage, finished, total).
+
+        >>> from tyrefem import study
+        >>> coarse = study("nasa-22x5.5-8pr", {"mesh.size": "14 mm", "mesh.through": 1, "drive.duration": "60 s"})
+        >>> page = coarse.explore({"drive.speed": ("15 mph", "20 mph")}, tolerance=1.0)
+        >>> page.certificate.worst < 1.0
+        True
+        """
+        from tyrefem.realtime.box_model import explored
+
+        data = explored(
+            self, vary, limits=limits, axes=axes, tolerance=tolerance, scheduler=scheduler, progress=progress
+        )
+        return with_verbs(Exploration, data)

@@ -18,6 +18,7 @@ from tyrefem.effects import Effect, EffectOf
 from tyrefem.errors import InputError, InputWarning, nearest
 from tyrefem.estimates.work import check_readings, smallest_tolerance
 from tyrefem.inputs.drive import Drive
+from tyrefem.inputs.explore_choice import ExploreChoice
 from tyrefem.inputs.loading import TR_R_64, FootprintLaw, TrR64, VerticalStiffness
 from tyrefem.inputs.plan_choice import PlanChoice
 from tyrefem.inputs.published import Published
@@ -288,6 +289,7 @@ class StudyCard(Card):
     effects: tuple[Annotated[Effect, EffectOf()], ...] = ()
     diagnosis: DiagnosisChoice = DiagnosisChoice()
     plan: PlanChoice = Field(default_factory=PlanChoice)
+    explore: ExploreChoice = Field(default_factory=ExploreChoice)
     published: Published = Published()
 
     @property

@@ -37,11 +37,8 @@ def arrays_of(model: ReducedModel, probe: Probe, tables: Tables, hot: Array) -> 
     """
     study, middle = probe.study, probe.middle()
     balance = reduced_balance(model, middle.tyre)
-    m, n = model.size, len(balance.start)
-    low = np.linalg.inv(np.linalg.cholesky(balance.M[:m, :m]))
-    rates, turned = np.linalg.eigh(low @ balance.K[:m, :m] @ low.T)
-    T = np.eye(n)
-    T[:m, :m] = low.T @ turned
+    m = model.size
+    rates, T = rotation(balance)
     even = np.linalg.solve(T[:m, :m], np.eye(m)[0] / model.V[0, 0])
     table, law = loss_tables(balance.tyre, [(zone, len(points)) for zone, points in model.samples.items()])
     doubled = 2.0 if study.section.half else 1.0
@@ -66,6 +63,16 @@ def arrays_of(model: ReducedModel, probe: Probe, tables: Tables, hot: Array) -> 
         "hot": model.V[hot] @ T[:m, :m],
         **tables.arrays(sampled(model)),
     }
+
+
+def rotation(balance: ReducedBalance) -> tuple[Array, Array]:
+    """Rates (m,) 1/s and T (n, n), with T^T M T = 1 and T^T K T = diag(rates) on the modes; reservoirs stay."""
+    m, n = balance.model.size, len(balance.start)
+    low = np.linalg.inv(np.linalg.cholesky(balance.M[:m, :m]))
+    rates, turned = np.linalg.eigh(low @ balance.K[:m, :m] @ low.T)
+    T = np.eye(n)
+    T[:m, :m] = low.T @ turned
+    return rates, T
 
 
 def outputs_of(study: StudyData, balance: ReducedBalance) -> list[dict[str, str]]:

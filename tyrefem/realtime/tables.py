@@ -122,7 +122,7 @@ class Probe:
         last = first.copy()
         first[:, 0], last[:, 0] = 0.0, top
         balance = self.balance(BoxDrive(np.arange(len(first) + 1.0), first, last, float(first[0, 3])))
-        _plain(balance)
+        plain(balance)
         # Speed 0 stands for a wheel that barely rolls; alone it stands for a standing wheel.
         least = 0.0 if len(speeds) == 1 and speeds[0] == 0 else 1e-9
         shares = np.clip(speeds / top, least, 1 - 1e-9)
@@ -194,7 +194,8 @@ def _per_metre(tyre: RollingTyre, t: float) -> Array:
     return np.concatenate(parts)
 
 
-def _plain(balance: ReducedBalance) -> None:
+def plain(balance: ReducedBalance) -> None:
+    """Raise `InputError` if effects or laws act that a real-time model does not have."""
     for zone, source in balance.tyre.sources.items():
         if type(source) is not HeatSource:
             raise InputError(

@@ -38,7 +38,7 @@ SAFETY = 0.8
 
 
 #: Tables of a study that do not affect temperatures.
-IRRELEVANT_TABLES = ("title", "measured", "cases", "diagnosis", "uncertainty")
+IRRELEVANT_TABLES = ("title", "measured", "cases", "diagnosis", "uncertainty", "explore")
 
 
 @dataclass(frozen=True, eq=False)

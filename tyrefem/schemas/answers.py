@@ -144,6 +144,15 @@ ANSWERS: dict[str, Keys] = {
         "trained_on": "integer: Number of full runs of the training.", "duration": "number: Length of a drive, s.",
         "tables": "table: Errors of tabulated films and heat.", "file": "text: The model.", "fmu*": "text: The FMU.",
     },
+    "explore": {
+        "file": "text: The page.", "numbers": "list: Dotted names of the sliders.", "modes": "integer: Number of modes.",
+        "errors": "table: Largest error of each output and answer in fresh full runs: K, Pa, W, N.",
+        "field": "number: Largest error at any node and reading, K.",
+        "worst": "number: Largest error of a temperature, K.", "tolerance": "number: Allowed error, K.",
+        "cases": "integer: Number of fresh full runs.",
+        "trained_on": "integer: Number of runs and corrections of the training.",
+        "products": "table: Largest relative error of the parts as products of the numbers.",
+    },
     "press": {
         **_STUDY, **_WHEEL, **_VERSIONS, **_MESH,
         "camber_rad": "number: Camber.", "radius_growth_m": "number: Growth of the crown's radius by inflation.",

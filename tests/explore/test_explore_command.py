@@ -1,0 +1,59 @@
+"""`tyrefem explore`: a page in its place, plain errors, nobody's files overwritten."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from tyrefem.api import Study
+from tyrefem.cli import main
+
+RANGES = ("--vary", "drive.speed=15 mph:20 mph", "--limit", "hottest_degC<60", "--tolerance", "1 K", "--workers", "1")
+
+
+def test_the_command_writes_a_page(small: Study, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    page = tmp_path / "out" / "tyre.html"
+    assert main(["explore", str(small.file), *RANGES, "--out", str(page), "--json"]) == 0
+    answer = json.loads(capsys.readouterr().out)
+    assert answer["file"] == str(page)
+    assert answer["numbers"] == ["drive.speed"]
+    assert answer["worst"] <= answer["tolerance"] == 1.0
+    assert answer["cases"] == 6
+    text = page.read_text(encoding="utf-8")
+    assert '"limits":[{"answer":"hottest_degC","below":60.0' in text
+    assert [file.name for file in page.parent.iterdir()] == ["tyre.html"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--vary", "drive.speed=fast"], "no slider"),
+        (["--vary", "drive.speed=20 mph:10 mph"], "must be below"),
+        (["--tolerance", "0 K"], "--tolerance"),
+        (["--axes", "drive.speed"], "is not KEY,KEY"),
+        (["--out", "page.txt"], "must end with .html"),
+        (["--limit", "hottest_degC"], "--limit"),
+    ],
+)
+def test_bad_input_ends_with_a_line(
+    arguments: list[str],
+    words: str,
+    small: Study,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["explore", str(small.file), "--workers", "1", *arguments]) == 2
+    assert words in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_foreign_file_stays(small: Study, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    mine = tmp_path / "mine.html"
+    mine.write_text("<p>mine</p>")
+    assert main(["explore", str(small.file), *RANGES, "--out", str(mine)]) == 2
+    assert "--force" in capsys.readouterr().err
+    assert mine.read_text() == "<p>mine</p>"

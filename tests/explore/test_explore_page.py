@@ -1,0 +1,224 @@
+"""The page in a real browser: its numbers are Python's, its sliders, limits, pins and texts do what they say."""
+
+from __future__ import annotations
+
+import json
+import re
+import shlex
+import tomllib
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from page_browser import result_in_browser, within_frame
+
+from tyrefem.api import Exploration, Study
+from tyrefem.cli.common import settings
+from tyrefem.compare.experiment import experiments
+from tyrefem.inputs.changes import value_at
+
+#: Settings at which page and Python are compared, and the largest difference that is allowed, K (and Pa, N, W).
+SETTINGS, SAME = 20, 1e-6
+#: Widths of a phone, CSS pixels.
+PHONE = 390
+
+
+def script(name: str) -> str:
+    """What is done in the page."""
+    return Path(__file__).with_name(f"{name}.js").read_text(encoding="utf-8")
+
+
+@pytest.fixture(scope="module")
+def numbers_of_the_page(page: str, explored: Exploration) -> tuple[Any, Any]:
+    places = np.random.default_rng(5).random((SETTINGS, len(explored.plan.varied)))
+    places[:4] = np.round(places[:4])
+    chosen = [explored.numbers(place) for place in places]
+    settings_text = json.dumps([numbers.tolist() for numbers in chosen])
+    return chosen, result_in_browser(page, script("numbers").replace("SETTINGS", settings_text))
+
+
+@pytest.mark.usefixtures("needs_chromium")
+def test_numbers_in_the_page_equal_those_of_python(numbers_of_the_page: tuple[Any, Any], explored: Exploration) -> None:
+    for numbers, shown in zip(*numbers_of_the_page, strict=True):
+        solution = explored.solve(numbers)
+        end = explored.study.card.drive.end
+        for name, exact in (
+            *((("early", name), value) for name, value in solution.at(0.03 * end).items()),
+            *((("late", name), value) for name, value in solution.at(0.71 * end).items()),
+            *((("answers", name), value) for name, value in solution.answers.items()),
+        ):
+            assert shown[name[0]][name[1]] == pytest.approx(exact, abs=SAME, rel=1e-9), name
+
+
+@pytest.mark.usefixtures("needs_chromium")
+def test_the_picture_shows_the_field(numbers_of_the_page: tuple[Any, Any], explored: Exploration) -> None:
+    """Its modes are integers of 16 bits: a few thousandths of a kelvin."""
+    size, turn = explored.reduced.size, explored.arrays["turn"]
+    for numbers, shown in zip(*numbers_of_the_page, strict=True):
+        state = explored.solve(numbers).state(0.6 * explored.study.card.drive.end)
+        field = explored.reduced.V @ turn[:size, :size] @ state[:size]
+        np.testing.assert_allclose(shown["field"], field, atol=5e-3)
+
+
+@pytest.fixture(scope="module")
+def acted(page: str) -> Any:
+    return result_in_browser(page, script("actions"))
+
+
+@pytest.mark.usefixtures("needs_chromium")
+def test_keys_move_sliders_and_the_new_setting_is_spoken(acted: Any) -> None:
+    assert acted["key"]["moved"] == pytest.approx(0.2)
+    assert acted["key"]["value"] == pytest.approx(20.2)
+    assert acted["key"]["spoken"] == "20.2 mph"
+    assert acted["key"]["field"] == "20.2"
+    assert re.match(r"Hottest \d+\.\d degrees in the \w+; rolling resistance", acted["key"]["live"])
+    assert acted["end"] == 30.0
+
+
+@pytest.mark.usefixtures("needs_chromium")
+def test_every_control_has_a_name(acted: Any) -> None:
+    assert acted["unnamed"] == []
+    assert "degrees Celsius" in acted["canvas"]
+    assert acted["coloured"] > 50
+
+
+@pytest.mark.usefixtures("needs_chromium")
+def test_a_broken_limit_turns_red(acted: Any) -> None:
+    assert acted["first"]["over"] == 0
+    assert acted["hot"]["over"] >= 1
+    assert acted["hot"]["rows"] == 1
+    assert acted["hot"]["badge"] == "badge"
+
+
+@pytest.mark.usefixtures("needs_chromium")
+def test_a_setting_outside_the_box_is_marked(acted: Any) -> None:
+    outside = acted["outside"]
+    assert outside["number"] == 31.5
+    assert outside["kind"] == "badge outside"
+    assert "Outside the certified box (speed)" in outside["badge"]
+    assert "outside" in outside["row"]
+    assert outside["note"] == "outside 10 to 30 mph: not certified"
+    assert outside["spoken"].endswith("outside the certified box")
+    assert "?" in outside["error"]
+    assert acted["first"]["badge"].startswith("certified")
+
+
+@pytest.mark.usefixtures("needs_chromium")
+def test_copied_flags_and_tables_make_the_setting(acted: Any, explored: Exploration) -> None:
+    """Both texts change the study as the page has it; without a change the command has no flags."""
+    study = explored.study
+    assert acted["first"]["command"].split() == ["tyrefem", "run", str(study.file)]
+    words = shlex.split(acted["copied"]["command"].replace("\\\n", " "))
+    assert words[:3] == ["tyrefem", "run", str(study.file)]
+    assert set(words[3::2]) == {"--set"}
+    by_flags = study.replace(settings(words[4::2]))
+    tables = tomllib.loads(acted["copied"]["toml"])
+    by_tables = study.replace({f"{table}": content for table, content in tables.items()})
+    for number, value, typed in zip(explored.plan.varied, acted["copied"]["numbers"], acted["written"], strict=True):
+        for changed in (by_flags, by_tables):
+            assert value_at(changed.data, number.key, changed.folder) == typed, number.key
+        assert number.of(typed) == pytest.approx(value, rel=1e-6)
+    numbers = np.array(acted["copied"]["numbers"])
+    np.testing.assert_allclose(explored.inputs.at(numbers)[0][0, 0, 0], by_flags.card.drive.phases[0].speed.start)
+
+
+@pytest.mark.usefixtures("needs_chromium")
+def test_two_settings_stand_side_by_side(acted: Any) -> None:
+    pins = acted["pins"]
+    assert pins["shown"]
+    rows = {row[0]: row[1:] for row in pins["rows"]}
+    assert rows["speed"] == ["16.0 mph", "30.0 mph", "+14.0 mph"]
+    first, second = pins["hottest"]
+    assert rows["highest of the drive"] == [f"{first:.1f} °C", f"{second:.1f} °C", f"+{second - first:.1f} °C"]
+    assert pins["note"].startswith("B − A: blue colder, red hotter")
+    assert pins["ghosts"] == 2 * 4
+
+
+@pytest.mark.usefixtures("needs_chromium")
+def test_along_the_envelope_the_limit_is_met(acted: Any) -> None:
+    assert acted["envelopeDone"]
+    assert acted["axes"] == [1, 0]
+    assert len(acted["envelope"]) >= 3
+    np.testing.assert_allclose(acted["envelope"], 40.0, atol=0.05)
+
+
+@pytest.mark.usefixtures("needs_chromium")
+def test_time_is_a_slider_and_plays(acted: Any) -> None:
+    assert acted["time"] == {"state": pytest.approx(60.0), "clock": "60 s"}
+    assert 60.0 < acted["played"] <= 120.0
+    assert acted["paused"]
+
+
+@pytest.mark.usefixtures("needs_chromium")
+def test_a_measured_run_sets_its_drive_and_shows_residuals(acted: Any, explored: Exploration) -> None:
+    """Residuals are those of the same readings in Python; the other run's pressure is no slider, so it is left out."""
+    keys = [number.key for number in explored.plan.varied]
+    measured = acted["measured"]
+    assert acted["runs"] == ["no measured run", "measured: slow"]
+    assert measured["numbers"][keys.index("drive.speed")] == pytest.approx(12.0)
+    assert measured["numbers"][keys.index("drive.load")] == pytest.approx(2500.0)
+    run = experiments(explored.study)[0].run
+    solution = explored.solve(measured["numbers"])
+    place = explored.about["read"].index("deep")
+    off = np.array(
+        [
+            reading - solution.readings(float(t))[place]
+            for t, reading in zip(run.times, run.temperatures["deep"], strict=True)
+        ]
+    )
+    assert measured["residuals"]["mean"] == pytest.approx(off.mean(), abs=1e-9)
+    assert measured["residuals"]["rms"] == pytest.approx(np.sqrt((off**2).mean()), abs=1e-9)
+    assert measured["residuals"]["count"] == len(run.times) == 7
+    assert measured["points"] == 2 * 7
+    assert f"{np.sqrt((off**2).mean()):.2f} K" in " ".join(measured["cells"])
+    assert acted["reset"]["numbers"] == acted["reset"]["start"]
+
+
+@pytest.mark.usefixtures("needs_chromium")
+def test_a_phone_and_the_dark(page: str) -> None:
+    """At a phone's width nothing stands out; in the dark letters stand on a dark ground, with enough contrast."""
+    shown = result_in_browser(within_frame(page, PHONE, 844), script("phone"))
+    assert shown["scroll"] <= shown["client"] == PHONE
+    assert shown["wide"] == []
+    assert shown["sticky"] == "sticky"
+    assert 150 < shown["height"] < 844 / 2
+    for theme in ("light", "dark"):
+        name, *contrasts = shown[theme]
+        assert name == theme
+        assert min(contrasts) > 4.5
+
+
+class _Sources(HTMLParser):
+    """Addresses that a page would load, and its elements."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.addresses: list[str] = []
+
+    def handle_starttag(self, tag: str, attributes: list[tuple[str, str | None]]) -> None:
+        self.addresses += [str(value) for name, value in attributes if name in ("src", "href", "srcset", "action")]
+
+
+def test_the_page_needs_no_network(page: str) -> None:
+    sources = _Sources()
+    sources.feed(page)
+    assert sources.addresses == ["#numbers"]
+    plain = re.sub(r'<script type="application/json".*?</script>', "", page, flags=re.DOTALL)
+    assert set(re.findall(r"https?://[^\s\"']+", plain)) == {"http://www.w3.org/2000/svg"}
+    assert not re.search(r"@import|url\(|fetch\(|XMLHttpRequest|WebSocket", plain)
+    assert "<title>Explore: Small tyre &lt;of the tests&gt;</title>" in page
+
+
+def test_a_notebook_shows_the_page(explored: Exploration) -> None:
+    framed = explored._repr_html_()
+    assert framed.startswith("<iframe srcdoc=")
+    assert "Small tyre &amp;lt;of the tests" in framed
+    assert framed.count('"') % 2 == 0
+    assert "BoxModel" not in repr(explored)
+    assert "certificate" in repr(explored)
+
+
+def test_runs_of_other_drives_are_named(page: str, small: Study) -> None:
+    assert "Measured runs that are not shown: other (its drive needs numbers that do not vary here)" in page
