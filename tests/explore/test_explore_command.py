@@ -29,7 +29,7 @@ def test_the_command_writes_a_page(small: Study, tmp_path: Path, capsys: pytest.
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["--vary", "drive.speed=fast"], "no slider"),
+        (["--vary", "drive.speed=15 mph,20 mph"], "no slider"),
         (["--vary", "drive.speed=20 mph:10 mph"], "must be below"),
         (["--tolerance", "0 K"], "--tolerance"),
         (["--axes", "drive.speed"], "is not KEY,KEY"),

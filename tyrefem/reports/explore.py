@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import html
 import json
-from functools import cache
 from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -19,7 +18,6 @@ if TYPE_CHECKING:
 SCRIPTS = ("explore_model.js", "explore_picture.js", "explore_charts.js", "explore_view.js")
 
 
-@cache
 def resource(name: str) -> str:
     """Text of a file beside this module."""
     return files("tyrefem.reports").joinpath(name).read_text(encoding="utf-8")
@@ -28,13 +26,12 @@ def resource(name: str) -> str:
 def page(model: BoxModel) -> str:
     """The page as text."""
     from jinja2 import Environment, StrictUndefined
+    from markupsafe import Markup
 
     data = page_data(model)
     # "</" would end the script element.
     text = json.dumps(data, allow_nan=False, separators=(",", ":")).replace("</", "<\\/")
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
-    from markupsafe import Markup
-
     return environment.from_string(resource("explore.html")).render(
         title=data["title"],
         name=data["name"],
