@@ -145,7 +145,8 @@ ANSWERS: dict[str, Keys] = {
         "tables": "table: Errors of tabulated films and heat.", "file": "text: The model.", "fmu*": "text: The FMU.",
     },
     "explore": {
-        "file": "text: The page.", "numbers": "list: Dotted names of the sliders.", "modes": "integer: Number of modes.",
+        "file": "text: The page.", "numbers": "list: Dotted names of the sliders.",
+        "modes": "integer: Number of modes.",
         "errors": "table: Largest error of each output and answer in fresh full runs: K, Pa, W, N.",
         "field": "number: Largest error at any node and reading, K.",
         "worst": "number: Largest error of a temperature, K.", "tolerance": "number: Allowed error, K.",
