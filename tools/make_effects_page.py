@@ -71,7 +71,8 @@ warmer_by = "25 delta_degC"
 
 ## An effect of your own
 
-A Python file in a folder that `TYREFEM_EFFECTS` names (several as in `PATH`):
+A Python file in a folder that `TYREFEM_PLUGINS` names, or its older name `TYREFEM_EFFECTS`. `tyrefem new effect lamp`
+writes this file, `tyrefem check` tries it: [extending](extending.md).
 
 ```python
 from typing import Annotated, ClassVar

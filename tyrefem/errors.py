@@ -14,6 +14,10 @@ class ResultWarning(UserWarning):
     """A result that may be in doubt; the message says where."""
 
 
+class PluginWarning(UserWarning):
+    """A file, package or class of a user that cannot be used, and is left out; the message says where and why."""
+
+
 class InputError(ValueError):
     """Bad input from a person: a file, a field, a unit, a number outside its range.
 

@@ -33,9 +33,7 @@ ALLOWED = {
     "cards/__init__.py: cache(_plausible)": "one value for every class of card",
     "cards/__init__.py: cache(_allowed)": "one value for every class of card",
     "cards/__init__.py: cache(_units)": "one value for every class of card",
-    "effects/__init__.py: cache(_modules)": "one value for every TYREFEM_EFFECTS",
     "effects/effect.py: cache(parameters)": "one value for every class of effect",
-    "boundaries/__init__.py: cache(laws)": "one value for every side of the tyre",
 }
 
 

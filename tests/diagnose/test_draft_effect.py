@@ -34,6 +34,7 @@ HEATED = Unknown("heat", 1.0, effect="missing-heat", choice=STATION)
 def _own_catalogue(monkeypatch: pytest.MonkeyPatch) -> None:
     """`use_effects` changes the environment: it is restored after each test."""
     monkeypatch.setenv("TYREFEM_EFFECTS", "")
+    monkeypatch.setenv("TYREFEM_PLUGINS", "")
 
 
 def law(terms: dict[str, float], kind: str = "no switch", time: float = np.nan, amplitude: float = 2e4) -> PlaceLaw:
@@ -175,7 +176,7 @@ def test_no_draft_without_a_law_that_holds() -> None:
         (None, "is not a folder"),
         ({}, "no Python file"),
         ({"notes.py": "x = 1\n"}, "none with an effect"),
-        ({"broken.py": "class Broken(\n"}, "cannot be loaded as effects"),
+        ({"broken.py": "class Broken(\n"}, "cannot be loaded: line 1: SyntaxError"),
     ],
 )
 def test_a_folder_that_cannot_be_used_is_one_error(
@@ -188,7 +189,7 @@ def test_a_folder_that_cannot_be_used_is_one_error(
         (folder / name).write_text(text, encoding="utf-8")
     with pytest.raises(InputError, match=complaint):
         use_effects(folder)
-    assert os.environ["TYREFEM_EFFECTS"] == ""
+    assert os.environ["TYREFEM_PLUGINS"] == ""
     assert main(["diagnose", "hidden-effect", "--effects", str(folder)]) == 2
     message = " ".join(capsys.readouterr().err.split())
     assert complaint in message

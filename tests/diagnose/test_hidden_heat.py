@@ -86,6 +86,7 @@ def test_heat_that_begins_late_is_dated_and_its_draft_effect_is_identified(
     )
     # The draft effect runs as any other: it is named, and closes the gap in the held-out run, too.
     monkeypatch.setenv("TYREFEM_EFFECTS", "")
+    monkeypatch.setenv("TYREFEM_PLUGINS", "")
     (draft,) = (tmp_path / "out" / "effects").glob("*.py")
     assert law["draft_effect"] == f"effects/{draft.name}"
     assert any(f"effects/{draft.name}" in sentence for sentence in verdict_words(d))

@@ -13,7 +13,8 @@ import tyrefem as tf
 from tyrefem.effects import catalogue
 from tyrefem.effects.description import example, parameter_rows, ports
 from tyrefem.effects.effect import PORTS
-from tyrefem.errors import InputError
+from tyrefem.errors import InputError, PluginWarning
+from tyrefem.plugins import use
 from tyrefem.reports.inputs import effect_rows
 
 pytestmark = pytest.mark.fast
@@ -172,6 +173,7 @@ def test_the_report_names_the_effects_at_work(study: tf.Study) -> None:
 
 def test_an_effect_of_the_user_s_folder_acts(folder: Path, study: tf.Study) -> None:
     (folder / "lamp.py").write_text(OWN.format(name="lamp", scale="50.0", default="0.0"), encoding="utf-8")
+    use(folder)
     assert "lamp" in catalogue()
     dark, lit = (
         study.replace({"effects": [{"name": "lamp", "shine": f"{shine} W/m**2"}]}).run().readings
@@ -189,8 +191,8 @@ def test_without_the_folder_it_is_gone(study: tf.Study) -> None:
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("class Lamp(", "cannot be loaded as effects: SyntaxError"),
-        ("import nothing_like_it", "cannot be loaded as effects: ModuleNotFoundError"),
+        ("class Lamp(", "cannot be loaded: line 1: SyntaxError"),
+        ("import nothing_like_it", "cannot be loaded: ModuleNotFoundError"),
         (OWN.format(name="lamp", scale="-1.0", default="0.0"), "effect 'lamp': parameter 'shine' needs a positive"),
         (OWN.format(name="lamp", scale="1.0", default="3.0"), "parameter 'shine' must have the default 0"),
         (OWN.format(name="lamp", scale="1.0", default="0.0").replace("def flux", "def flow"), "overrides no port"),
@@ -198,26 +200,27 @@ def test_without_the_folder_it_is_gone(study: tf.Study) -> None:
         (OWN.format(name="lamp", scale="1.0", default="0.0").replace('"estimate', '"" #'), "needs 'source'"),
     ],
 )
-def test_a_bad_file_is_one_clear_error(folder: Path, text: str, words: str) -> None:
+def test_a_bad_file_is_one_clear_warning_and_is_left_out(folder: Path, text: str, words: str) -> None:
     (folder / "lamp.py").write_text(text, encoding="utf-8")
-    for _ in range(2):  # and the same one when asked again
-        with pytest.raises(tf.InputError) as caught:
-            catalogue()
-        assert str(caught.value).startswith(str(folder / "lamp.py"))
-        assert words in str(caught.value)
-        assert "\n" not in str(caught.value)
+    with pytest.warns(PluginWarning) as warned:
+        assert "lamp" not in catalogue()
+    assert "hot-road" in catalogue()  # and no second warning
+    (message,) = [str(warning.message) for warning in warned]
+    assert message.startswith(f"left out: {folder / 'lamp.py'}: ")
+    assert words in message
+    assert "\n" not in message
 
 
 def test_a_name_that_is_taken_is_refused(folder: Path) -> None:
     (folder / "lamp.py").write_text(OWN.format(name="hot-road", scale="1.0", default="0.0"), encoding="utf-8")
-    with pytest.raises(tf.InputError, match="two effects are named 'hot-road'"):
-        catalogue()
+    with pytest.warns(PluginWarning, match="'hot-road' has the name of a shipped effect"):
+        assert catalogue()["hot-road"].__module__ == "tyrefem.effects.hot_road"
 
 
 def test_a_folder_that_is_none(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("TYREFEM_EFFECTS", "/nowhere/at/all")
-    with pytest.raises(tf.InputError, match="TYREFEM_EFFECTS names '/nowhere/at/all', which is not a folder"):
-        catalogue()
+    with pytest.warns(PluginWarning, match="TYREFEM_EFFECTS names '/nowhere/at/all', which is not a folder"):
+        assert "lamp" not in catalogue()
 
 
 def test_an_effect_says_of_itself_what_it_is(folder: Path) -> None:

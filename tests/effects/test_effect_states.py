@@ -13,7 +13,8 @@ from suitable import COARSE
 import tyrefem as tf
 from tyrefem.conduction.fixed_steps import fixed_step_solution
 from tyrefem.conduction.sensitivity import stage_times
-from tyrefem.errors import InputError
+from tyrefem.errors import InputError, PluginWarning
+from tyrefem.plugins import registry
 from tyrefem.reduced.balance import reduced_balance
 from tyrefem.reduced.model import NotReducibleError, ReducedModel
 from tyrefem.simulation.rolling_tyre import RollingTyre
@@ -205,6 +206,8 @@ def test_a_diagnosis_names_an_effect_with_a_state(tmp_path: Path) -> None:
 )
 def test_a_class_that_forgot_something_is_refused(folder: Path, old: str, new: str, words: str) -> None:
     (folder / "soot.py").write_text(OWN.replace(old, new))
+    with pytest.warns(PluginWarning, match=words):
+        registry()
     with pytest.raises(InputError, match=words):
         braked({"name": "soot", "shine": "500 W/m**2"})
 
@@ -214,7 +217,7 @@ def test_a_class_that_forgot_something_is_refused(folder: Path, old: str, new: s
     [
         ('"clock": 1.0}', "}", "must return a mapping with soot, clock"),
         ('"clock": 1.0}', '"clock": float("nan")}', "'clock' must be finite"),
-        ('"clock": 1.0}', '"clock": np.ones(2)}', "state 'clock' has the shape"),
+        ('"clock": 1.0}', '"clock": np.ones(2)}', "'clock'. must be a finite number in s/s, not an array of shape"),
         ('"soot", t)', '"snow", t)', "has no state 'snow'"),
     ],
 )

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import functools
 from abc import abstractmethod
+from collections.abc import Iterator
 from typing import Annotated, ClassVar, Literal
 
-from tyrefem.boundaries import CAL, Law
+from tyrefem.boundaries import CAL, FILM, Law
 from tyrefem.cards import FilmCoefficient, Temperature
 from tyrefem.cards.plausible import AIR_FILM, GAS_HEAT
+from tyrefem.plugins import Range, Trial, trial
 from tyrefem.quantity import Unit
 
 #: Specific gas constant of dry air, J/kg/K (R / M = 8.314462618 / 0.0289652; M: CIPM-2007).
@@ -45,6 +48,20 @@ class ContainedAirLaw(Law):
     @abstractmethod
     def heat_capacity(self, volume: float, pressure: float, temperature: float) -> float | None:
         """J/K of a volume (m3) filled to a gauge pressure (Pa) at a temperature (degC); None: fixed temperature."""
+
+    def trials(self) -> Iterator[Trial]:
+        """Start, film, and heat capacity, or the temperature of a gas without one."""
+        yield trial("start(25 degC)", lambda: self.start(25.0), Range("degC", -KELVIN))
+        yield trial("film", lambda: self.film, FILM)
+        for pressure in (0.0, 2e5, 1.5e6):
+            words = f"heat_capacity(0.03 m3, {pressure:g} Pa, 25 degC)"
+            capacity = functools.partial(self._capacity, pressure)
+            yield trial(words, capacity, Range("J/K", 0.0))
+
+    def _capacity(self, pressure: float) -> float:
+        """Heat capacity of 0.03 m3, J/K; the fixed temperature must be there where there is none."""
+        capacity = self.heat_capacity(0.03, pressure, 25.0)
+        return abs(self.fixed_temperature) if capacity is None else capacity
 
 
 class Gas(ContainedAirLaw):

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import functools
 import itertools
 from abc import abstractmethod
+from collections.abc import Iterator
 from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import WithJsonSchema, model_validator
 
-from tyrefem.boundaries import CAL, Law
+from tyrefem.boundaries import CAL, FILM, SPEEDS, Law
 from tyrefem.cards import FilmCoefficient
 from tyrefem.cards.plausible import AIR_FILM
 from tyrefem.errors import InputError, InputWarning
+from tyrefem.plugins import Trial, trial
 from tyrefem.quantity import Unit
 from tyrefem.quantity.pattern import row_schema
 
@@ -25,6 +28,11 @@ class OutsideAirLaw(Law):
     @abstractmethod
     def film(self, speed: float) -> float:
         """h, W/m2/K, at a speed in m/s."""
+
+    def trials(self) -> Iterator[Trial]:
+        """The film at rest and at speeds."""
+        for speed in SPEEDS:
+            yield trial(f"film({speed:g} m/s)", functools.partial(self.film, speed), FILM)
 
 
 class Nasa(OutsideAirLaw):

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Annotated, ClassVar, Literal
 
-from tyrefem.boundaries import CAL, Law
+from tyrefem.boundaries import CAL, FILM, Law
 from tyrefem.cards import FilmCoefficient, Temperature
 from tyrefem.cards.plausible import CONTACT_FILM, SPECIFIC_HEAT, WHEEL_MASS
+from tyrefem.plugins import Range, Trial, trial
 from tyrefem.quantity import Unit
 
 
@@ -26,6 +28,10 @@ class RimLaw(Law):
     def total_film(self) -> float:
         """The film with the contact resistance in series, W/m2/K."""
         return 1 / (1 / self.film + self.contact_resistance) if self.film > 0 else 0.0
+
+    def trials(self) -> Iterator[Trial]:
+        """The film in series."""
+        yield trial("total_film", lambda: self.total_film, FILM)
 
 
 class FixedRim(RimLaw):
@@ -52,3 +58,8 @@ class LumpedRim(RimLaw):
     def heat_capacity(self) -> float:
         """J/K of the whole wheel."""
         return self.mass * self.specific_heat
+
+    def trials(self) -> Iterator[Trial]:
+        """The film, and the heat capacity."""
+        yield from super().trials()
+        yield trial("heat_capacity", lambda: self.heat_capacity, Range("J/K", 1e-9))

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import functools
 from abc import abstractmethod
+from collections.abc import Iterator
 from typing import Annotated, ClassVar, Literal
 
-from tyrefem.boundaries import CAL, Contact, Law
+from tyrefem.boundaries import CAL, FILM, SPEEDS, Contact, Law
 from tyrefem.boundaries.road_film import effusivity, half_space_film, triangular_film
 from tyrefem.cards import FilmCoefficient, Temperature
 from tyrefem.cards.plausible import CONDUCTIVITY, CONTACT_FILM, ROAD_CONDUCTIVITY, SOLID_CAPACITY
+from tyrefem.plugins import Trial, trial
 from tyrefem.quantity import Unit
 
 
@@ -29,6 +32,13 @@ class RoadLaw(Law):
     @abstractmethod
     def film(self, contact: Contact) -> float:
         """H_c during contact, W/m2/K."""
+
+    def trials(self) -> Iterator[Trial]:
+        """The film of a usual footprint at rest and at speeds, and of a tyre without contact."""
+        for speed, length in [*((speed, 0.15) for speed in SPEEDS), (10.0, 0.0)]:
+            contact = Contact(speed, length, 0.25, 2e6)
+            words = f"film(contact of {length:g} m at {speed:g} m/s)"
+            yield trial(words, functools.partial(self.film, contact), FILM)
 
 
 class ConstantRoadFilm(RoadLaw):

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import functools
 from abc import abstractmethod
+from collections.abc import Iterator
 from typing import Annotated, ClassVar, Literal
 
 from tyrefem.boundaries import Law
@@ -10,6 +12,7 @@ from tyrefem.boundaries.road import HalfSpace, RoadLaw
 from tyrefem.boundaries.road_film import effusivity
 from tyrefem.cards import Temperature
 from tyrefem.cards.plausible import ROAD_CONDUCTIVITY, SOLID_CAPACITY
+from tyrefem.plugins import Range, Trial, trial
 from tyrefem.quantity import Unit
 
 Friction = Annotated[float, Unit("1", ge=0, le=5)]
@@ -37,6 +40,11 @@ class SlidingLaw(Law):
             self.road_conductivity or named.road_conductivity, self.road_heat_capacity or named.road_heat_capacity
         )
 
+    def trials(self) -> Iterator[Trial]:
+        """A law that does not roll has `UniformSliding.friction`."""
+        must = "extends UniformSliding, with the method friction(self, sliding_speed, rolling_speed)"
+        yield Trial(must, None if self.rolls else f"it must be a law that {must}")
+
 
 class UniformSliding(SlidingLaw):
     """Friction heat mu p v_s of the whole footprint at one sliding speed v_s; zero in phases without slip.
@@ -50,6 +58,12 @@ class UniformSliding(SlidingLaw):
     def friction(self, sliding_speed: float, rolling_speed: float) -> float:
         """Friction force over load, without the limit of decomposition; speeds of the tread over the road and through
         the footprint, m/s."""
+
+    def trials(self) -> Iterator[Trial]:
+        """The friction from little slip to a locked wheel."""
+        for sliding, rolling in ((0.01, 10.0), (1.0, 10.0), (10.0, 10.0), (30.0, 0.0)):
+            words = f"friction({sliding:g} m/s sliding, {rolling:g} m/s rolling)"
+            yield trial(words, functools.partial(self.friction, sliding, rolling), Range("1", 0.0, 5.0))
 
 
 class ConstantFriction(UniformSliding):

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from tyrefem.cli.common import warn
+from tyrefem.cli.common import fail, warn
 from tyrefem.cli.progress import progress
 from tyrefem.cli.shell import answer_with, say
 from tyrefem.errors import InputError, nearest
@@ -24,12 +24,24 @@ def check(
     file: Annotated[
         str,
         typer.Argument(
-            metavar="FILE", help="A study, sweep, section or material (TOML, or its name), or a table (CSV)."
+            metavar="FILE",
+            help="A study, sweep, section or material (TOML, or its name), a table (CSV), or own plugins (.py).",
         ),
     ],
+    study: Annotated[
+        str | None, typer.Option("--study", metavar="STUDY", help="Of plugins: the study in which they are tried.")
+    ] = None,
 ) -> None:
-    """Check a file without running it; report its first error."""
+    """Check a file without running it; report its first error.
+
+    A Python file is loaded, and the contracts of its effects, laws and answers are tried in short runs.
+    """
     path = Path(file)
+    if path.suffix == ".py" and path.is_file():
+        _plugins(path, study)
+        return
+    if study is not None:
+        raise InputError("goes with a Python file of plugins", field="--study")
     if path.is_dir():
         names = ("rig.toml", "sweep.toml", "study.toml")
         path = path / next((name for name in names if (path / name).is_file()), "study.toml")
@@ -46,6 +58,22 @@ def check(
     with progress(f"{path.name}: checked"):
         words = _card(path) if path.suffix.lower() == ".toml" else _table(path)
     answer_with({"file": path, "words": words})
+    say(f"{path}: {words}")
+
+
+def _plugins(path: Path, study: str | None) -> None:
+    """Print every contract of a file's plugins; exit code 2 if one is not kept."""
+    from tyrefem.contracts import check_file
+
+    with progress(f"{path.name}: checked"):
+        checked = check_file(path, study)
+    say(*checked.lines)
+    words = f"{checked.count} contracts, all kept"
+    if checked.failed:
+        words = f"{checked.failed} of {checked.count} contracts fail"
+    answer_with({"file": path, "words": words, **checked.to_dict()})
+    if checked.failed:
+        raise typer.Exit(fail(f"{path}: {words}", 2))
     say(f"{path}: {words}")
 
 

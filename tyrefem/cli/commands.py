@@ -15,7 +15,7 @@ from typer.core import TyperGroup
 
 import tyrefem
 from tyrefem.cli.shell import all_speak, notify
-from tyrefem.errors import InputError, ResultWarning
+from tyrefem.errors import InputError, PluginWarning, ResultWarning
 from tyrefem.estimates.work import LongWorkWarning
 from tyrefem.output import reading
 
@@ -107,7 +107,7 @@ def _warnings_shown() -> Iterator[None]:
         usual = warnings.showwarning
 
         def show(message: Warning | str, category: type[Warning], *rest: Any, **options: Any) -> None:
-            if issubclass(category, LongWorkWarning | ResultWarning):
+            if issubclass(category, LongWorkWarning | PluginWarning | ResultWarning):
                 notify(f"warning: {message}")
             else:
                 usual(message, category, *rest, **options)
@@ -115,6 +115,7 @@ def _warnings_shown() -> Iterator[None]:
         warnings.showwarning = show
         warnings.simplefilter("always", LongWorkWarning)
         warnings.simplefilter("always", ResultWarning)
+        warnings.simplefilter("always", PluginWarning)
         yield
 
 

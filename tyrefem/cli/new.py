@@ -11,6 +11,7 @@ from typing import Annotated, Any
 import typer
 
 from tyrefem.cli.common import ForceOption, SetOption, settings
+from tyrefem.cli.new_plugin import PLUGINS, new_plugin
 from tyrefem.cli.shell import answer_with, say
 from tyrefem.cli.show import complete_names
 from tyrefem.errors import InputError, nearest
@@ -20,14 +21,23 @@ DEFAULTS = {"study": "nasa-22x5.5-8pr", "section": "nasa-22x5.5-8pr", "material"
 
 
 def new(
-    kind: Annotated[str, typer.Argument(help="study, section, material or tyre.")],
-    name: Annotated[str, typer.Argument(help="Name of the new card: letters, digits, . _ -; or a tyre's size.")],
+    kind: Annotated[
+        str,
+        typer.Argument(
+            help="study, section, material or tyre; or a plugin: effect, boundary-law, tan-delta-law, strain-law, "
+            "friction-law, sweep-answer."
+        ),
+    ],
+    name: Annotated[
+        str, typer.Argument(help="Name of the new card: letters, digits, . _ -; or a tyre's size; or of the plugin.")
+    ] = "",
     copy_of: Annotated[
         str | None,
         typer.Option("--from", help="Card to copy; of a tyre the study to scale.", autocompletion=complete_names),
     ] = None,
     out: Annotated[
-        Path | None, typer.Option("--out", help="The file to write, .toml; of a tyre the folder of both files.")
+        Path | None,
+        typer.Option("--out", help="The file to write, .toml, of a plugin .py; of a tyre the folder of both files."),
     ] = None,
     rim: Annotated[str | None, typer.Option("--rim", help="Of a size: the rim's width, e.g. '6 in'.")] = None,
     load: Annotated[str | None, typer.Option("--load", help="Of a size: a load that it must carry.")] = None,
@@ -41,7 +51,13 @@ def new(
 
     A section or study may be made from a tyre's size: `tyrefem new section 205/60R15 --rim "6 in"`. `new tyre` scales
     a study with its section to another size: `tyrefem new tyre 225/45R17 --from passenger-205-55r16`.
+    A plugin is a short Python file to begin from, in the folder plugins: `tyrefem new effect lamp`.
     """
+    if kind in PLUGINS:
+        if copy_of or rim or load or pressure or changes:
+            raise InputError("--from, --rim, --load, --pressure and --set are for cards, not for plugins", field="kind")
+        new_plugin(kind, name, out, force=force)
+        return
     from tyrefem import library
     from tyrefem.output import atomic_path, place_of_output
     from tyrefem.output.file import results_file
@@ -49,7 +65,9 @@ def new(
     from tyrefem.sizes import looks_like_size
 
     if kind not in (*DEFAULTS, "tyre"):
-        raise InputError(f"no kind '{kind}'{nearest(kind, (*DEFAULTS, 'tyre'))}")
+        raise InputError(f"no kind '{kind}'{nearest(kind, [*DEFAULTS, 'tyre', *PLUGINS])}")
+    if not name:
+        raise InputError("is missing: the new card's name, or a tyre's size", field="name")
     of_size = {"rim_width": rim, "load": load, "pressure": pressure, **settings(changes)}
     of_size = {key: value for key, value in of_size.items() if value is not None}
     if kind == "tyre":

@@ -120,7 +120,7 @@ def film(
         "half-space": "exact, road of its own effusivity",
     }
     lines, films = [], {}
-    for name, law in sorted(laws("road").items()):
+    for name, law in sorted((name, law) for name, law in laws("road").items() if name in words):
         chosen: Any = law.check({"law": name} | (of_road if name == "half-space" else {}))
         films[name] = chosen.film(Contact(v, length, k, C))
         lines.append(f"{name:16} {films[name]:10.1f} W/m2/K  {words.get(name, '')}".rstrip())

@@ -176,7 +176,7 @@ def sweep(
     """
     from tyrefem.cli.sweep_flags import computed_design, questions, questions_of_flags
     from tyrefem.quantity import parse
-    from tyrefem.reports.sweep_files import FILES, KEPT, save
+    from tyrefem.reports.sweep_files import file_names, kept_names, save
     from tyrefem.variants.execution import Execution
 
     given = questions_of_flags(
@@ -191,8 +191,9 @@ def sweep(
         raise error if error.field else error.within(field="--tolerance") from None
     name, wanted = questions(study, given, settings(changes), case)
     warn(wanted.study.warnings)
+    place = out or Path("results") / f"{name}-sweep"
     with (
-        results_folder(out or Path("results") / f"{name}-sweep", "sweep", FILES, force=force, keeps=KEPT) as folder,
+        results_folder(place, "sweep", file_names(), force=force, keeps=kept_names()) as folder,
         stages() as tick,
     ):
         design = computed_design(wanted, how.given({"folder": folder, "progress": tick}), scheduler, workers)

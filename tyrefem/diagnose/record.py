@@ -18,6 +18,7 @@ from tyrefem.diagnose.law_record import law_record
 from tyrefem.diagnose.result_tables import candidate_rows, clearest, parameters, set_rows
 from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, PARTLY, UNEXPLAINED
 from tyrefem.diagnose.words import look_folder, verdict_words
+from tyrefem.inputs.study_plugins import plugin_summary
 from tyrefem.output import jsonable, versions
 
 if TYPE_CHECKING:
@@ -91,6 +92,7 @@ def record(d: DiagnosisData) -> dict[str, Any]:
         "reduced": dict(d.predictions),
         "wall_time_s": d.seconds,
         "versions": versions(),
+        **plugin_summary(d.original, [candidate.name for candidate in d.candidates]),
         "random_seed": None,
         "input": dict(d.original.data),
     }  # fmt: skip

@@ -85,7 +85,7 @@ def diagnose(study: StudyData, table: Table | None = None, **options: Unpack[Dia
     known : responses of the runs' drives (see `responses`), for many diagnoses of one layout.
     rerun : run the amended study on its mesh at the end; otherwise ``after`` is the prediction of the fit.
     verdict_only : leave out what follows from a verdict: the law of the missing heat, and the next experiment.
-    effects : folder with further effects, as ``TYREFEM_EFFECTS`` names them; they stay in the catalogue afterwards.
+    effects : folder with further effects, as ``TYREFEM_PLUGINS`` names them; they stay in the catalogue afterwards.
     store : store of finished simulations, from which an interrupted diagnosis continues.
     calibration : folder or ``calibration.json`` of ``tyrefem isolability --calibrate`` for this layout; the first look
         then has a conformal set.

@@ -1,7 +1,6 @@
 """The catalogue of physical effects that a model may lack, one class each, registered by their modules.
 
-An effect is an `Effect` subclass in a module of this package, or in a Python file of a folder that the user names in
-``TYREFEM_EFFECTS``.
+An effect is an `Effect` subclass in a module of this package, or in a user's plugin: `tyrefem.plugins`.
 
 This package knows studies and runs only by the protocols of `effects.tyre`.
 """
@@ -10,10 +9,9 @@ from __future__ import annotations
 
 import functools
 import importlib
-import importlib.util
 import os
 import pkgutil
-import sys
+import warnings
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -22,10 +20,12 @@ from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import CoreSchema, core_schema
 
 from tyrefem.cache import Cache
-from tyrefem.effects.effect import Effect, Parameter, Prior
+from tyrefem.effects.effect import Effect, Parameter, Prior, complaint
+from tyrefem.effects.shapes import with_checked_shapes
 from tyrefem.effects.state import EffectState
-from tyrefem.errors import InputError, nearest
-from tyrefem.output import note_input
+from tyrefem.errors import InputError, PluginWarning, nearest
+from tyrefem.plugins import Kind, Origin, registry, use
+from tyrefem.plugins.environment import FOLDERS
 
 __all__ = ["Effect", "EffectOf", "EffectState", "Parameter", "Prior", "catalogue", "use_effects"]
 
@@ -34,39 +34,39 @@ _READ: Cache[Effect] = Cache(size=4096)
 
 
 @functools.cache
-def _modules(folders: str) -> frozenset[str]:
-    """Import every module that defines effects; return the modules' names."""
-    modules = [f"{__name__}.{module.name}" for module in pkgutil.iter_modules(__path__)]
-    for name in modules:
-        importlib.import_module(name)
-    for folder in filter(None, folders.split(os.pathsep)):
-        if not Path(folder).is_dir():
-            raise InputError(f"TYREFEM_EFFECTS names '{folder}', which is not a folder")
-        modules += [_loaded(file) for file in sorted(Path(folder).resolve().glob("*.py"))]
-    return frozenset(modules)
+def shipped_effects() -> dict[str, type[Effect]]:
+    """The effects of this package by name, in alphabetical order."""
+    for module in pkgutil.iter_modules(__path__):
+        importlib.import_module(f"{__name__}.{module.name}")
+    effects: dict[str, type[Effect]] = {}
+    classes = [Effect]
+    for cls in classes:
+        classes += cls.__subclasses__()
+    for cls in classes:
+        if not cls.name or not cls.__module__.startswith(f"{__name__}."):
+            continue
+        if cls.name in effects:
+            both = " and ".join(sorted({cls.__module__, effects[cls.name].__module__}))
+            raise InputError(f"two effects are named '{cls.name}': in {both}")
+        effects[cls.name] = cls
+    return dict(sorted(effects.items()))
 
 
-def _loaded(file: Path) -> str:
-    """Execute a user's file as a separate module; return the module's name."""
-    name = f"tyrefem_user_effects.{file}"
-    spec = importlib.util.spec_from_file_location(name, file)
-    assert spec is not None
-    assert spec.loader is not None
-    module = sys.modules[name] = importlib.util.module_from_spec(spec)
-    note_input(file)
-    try:
-        spec.loader.exec_module(module)
-    except Exception as error:
-        del sys.modules[name]
-        reason = error.message if isinstance(error, InputError) else f"{type(error).__name__}: {error}"
-        raise InputError(f"cannot be loaded as effects: {reason}", file=file) from error
-    return name
+KIND = Effect.plugin_kind = Kind(
+    "effect",
+    "effects",
+    'name: ClassVar[str] = "..."',
+    lambda cls: str(getattr(cls, "name", "")),
+    shipped_effects,
+    lambda cls: complaint(cls),
+    with_checked_shapes,
+)
 
 
 def use_effects(folder: str | Path) -> tuple[str, ...]:
     """Add a folder of a user's effects to the catalogue for the rest of this process and its workers; their names.
 
-    The same as naming the folder in ``TYREFEM_EFFECTS``.
+    The same as naming the folder in ``TYREFEM_PLUGINS``.
 
     Raises
     ------
@@ -75,56 +75,35 @@ def use_effects(folder: str | Path) -> tuple[str, ...]:
     place = Path(folder).resolve()
     if not place.is_dir():
         raise InputError(f"effects: '{folder}' is not a folder")
-    before = os.environ.get("TYREFEM_EFFECTS", "")
-    folders = [each for each in before.split(os.pathsep) if each]
-    if str(place) not in [str(Path(each).resolve()) for each in folders]:
-        os.environ["TYREFEM_EFFECTS"] = os.pathsep.join([*folders, str(place)])
-    try:
-        names = [
-            name
-            for name, effect in catalogue().items()
-            if Path(str(sys.modules[effect.__module__].__file__)).parent == place
-        ]
-        if not names:
-            files = "no Python file" if not list(place.glob("*.py")) else "Python files, but none with an effect"
-            raise InputError(f"effects: '{folder}' has {files}; docs/effects.md, \"An effect of your own\"")
-    except InputError:
-        os.environ["TYREFEM_EFFECTS"] = before
-        raise
-    return tuple(names)
+    before = os.environ.get(FOLDERS, "")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", PluginWarning)  # a failure in this folder is raised below
+        use(place)
+        loaded = registry()
+    inside = [plugin.name for plugin in loaded.plugins if plugin.kind is KIND and _lies_in(plugin.origin, place)]
+    failure = next((failure for failure in loaded.failures if _lies_in(failure.origin, place)), None)
+    if failure is not None or not inside:
+        os.environ[FOLDERS] = before
+        if failure is not None:
+            raise failure.error
+        files = "no Python file" if not list(place.glob("*.py")) else "Python files, but none with an effect"
+        raise InputError(f"effects: '{folder}' has {files}; docs/effects.md, \"An effect of your own\"")
+    return tuple(sorted(inside))
+
+
+def _lies_in(origin: Origin, place: Path) -> bool:
+    return origin.file is not None and origin.file.parent == place
 
 
 def catalogue() -> dict[str, type[Effect]]:
-    """Every effect by name, in alphabetical order.
-
-    Raises
-    ------
-    InputError : a user's file cannot be loaded, or has the name of another effect.
+    """Every effect by name, in alphabetical order; a user's effect that fails is left out, with a warning.
 
     >>> "hot-road" in catalogue()
     True
     """
-    modules = _modules(os.environ.get("TYREFEM_EFFECTS", ""))
-    return dict(_by_name(modules, Effect.made))
-
-
-@functools.lru_cache(maxsize=1)
-def _by_name(modules: frozenset[str], made: int) -> dict[str, type[Effect]]:
-    """The effects of some modules; ``made``: number of classes of effects so far, which asks for a new search."""
-    effects: dict[str, type[Effect]] = {}
-    classes = [Effect]
-    for cls in classes:
-        classes += cls.__subclasses__()
-    for cls in classes:
-        if not cls.name or cls.__module__ not in modules:
-            continue
-        if getattr(sys.modules[cls.__module__], cls.__name__, None) is not cls:
-            continue  # from an earlier version of its file
-        if cls.name in effects:
-            both = " and ".join(sorted({cls.__module__, effects[cls.name].__module__}))
-            raise InputError(f"two effects are named '{cls.name}': in {both}")
-        effects[cls.name] = cls
-    return dict(sorted(effects.items()))
+    effects = shipped_effects()
+    plugins = registry().classes(KIND)
+    return dict(sorted({**effects, **plugins}.items())) if plugins else dict(effects)
 
 
 class EffectOf:
@@ -135,6 +114,7 @@ class EffectOf:
             raise InputError(f"must be a table with a name, not {value!r:.40}")
         known = catalogue()
         name = value.get("name")
+        registry().refuse(KIND, name, known=isinstance(name, str) and name in known)
         if not isinstance(name, str) or name not in known:
             raise InputError(f"unknown effect {name!r:.40}{nearest(str(name), known)}", field="name")
         effect, entry = known[name], {key: entry for key, entry in value.items() if key != "name"}

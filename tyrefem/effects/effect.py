@@ -18,6 +18,7 @@ from tyrefem.effects.signature import Signature
 from tyrefem.effects.state import EffectState, TemperaturesOfTyre, Values
 from tyrefem.effects.tyre import StudyOfTyre, Tyre
 from tyrefem.errors import InputError, nearest
+from tyrefem.plugins.kind import Kind, is_ours
 from tyrefem.quantity import Unit, convert
 
 if TYPE_CHECKING:
@@ -107,7 +108,7 @@ class Parameter:
 
 
 class Effect(Card):
-    """Base of all effects; a subclass in a module of this package, or of a folder the user names, registers itself.
+    """Base of all effects; a subclass in a module of this package, or of a user's plugin, registers itself.
 
     A subclass sets ``name``, ``sentence``, ``source``, its parameters as fields annotated with a `Prior`, and
     overrides the ports (methods) where it acts. Ports receive the tyre in its surroundings (speed, load cases,
@@ -117,16 +118,14 @@ class Effect(Card):
 
     @classmethod
     def __pydantic_init_subclass__(cls, **options: Any) -> None:
-        """Count the class, and refuse it if it lacks a required attribute of an effect."""
-        Effect.made += 1
-        if cls.name:
-            complaint = _complaint(cls)
-            if complaint:
-                raise InputError(f"effect '{cls.name}': {complaint}")
+        """Refuse a class that lacks a required attribute of an effect; `tyrefem.plugins` judges the user's."""
+        if cls.name and is_ours(cls):
+            wrong = complaint(cls)
+            if wrong:
+                raise InputError(f"effect '{cls.name}': {wrong}")
 
     kind: ClassVar[str] = "effect"
-    #: Number of subclasses that were ever made.
-    made: ClassVar[int] = 0
+    plugin_kind: ClassVar[Kind]
     #: Name in study files; one sentence; reference; family: heat, conduction, boundary...
     name: ClassVar[str] = ""
     sentence: ClassVar[str] = ""
@@ -346,7 +345,7 @@ PORTS = ports_of(Effect)
 FAMILIES = ("heat", "conduction", "boundary", "section", "asymmetry", "measurement", "calibration")
 
 
-def _complaint(cls: type[Effect]) -> str | None:
+def complaint(cls: type[Effect]) -> str | None:
     """Error of an effect's class, or None."""
     for attribute in ("sentence", "source", "family"):
         if not getattr(cls, attribute):

@@ -167,10 +167,19 @@ def _worn(section: Section, card: StudyCard) -> Section:
     def worn() -> Section:
         left = section
         for effect in wear:
-            left = effect.worn(left)
+            left = _is_section(effect, effect.worn(left))
         return left
 
     return _WORN.get((section, *((type(effect), effect.model_dump_json()) for effect in wear)), worn)
+
+
+def _is_section(effect: Any, left: object) -> Section:
+    """What an effect makes of a section, refused where it is no section."""
+    from tyrefem.geometry.section import Section
+
+    if not isinstance(left, Section):
+        raise InputError(f"worn(section) must give a section, not {left!r:.40}", field=f"effects.{effect.name}")
+    return left
 
 
 def _check_energy(card: StudyCard, section: Section, file: Path | None) -> None:

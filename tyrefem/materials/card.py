@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,12 +27,15 @@ from tyrefem.cards.plausible import (
 from tyrefem.errors import InputError, InputWarning
 from tyrefem.materials.elasticity import Cords, Elasticity
 from tyrefem.materials.fatigue import Fatigue
+from tyrefem.materials.law_of_card import LawOfCard, law_name
 from tyrefem.materials.loss_frequency import LossFrequency, loss_over_frequency
 from tyrefem.materials.loss_tangent import Loss
 from tyrefem.materials.properties import PropertyTable, Softening, Sourced, columns
-from tyrefem.materials.road_friction import RoadFriction
+from tyrefem.materials.road_friction import FRICTION, FrictionOnRoad, RoadFriction
 from tyrefem.materials.strain_dependence import StrainDependence
+from tyrefem.materials.tan_delta_law import TanDeltaLaw
 from tyrefem.materials.wear import Wear
+from tyrefem.plugins import Kind
 from tyrefem.quantity import Unit
 from tyrefem.quantity.pattern import quantity_schema, row_schema
 
@@ -181,7 +184,7 @@ class YoungsModulus(Sourced):
     value: Annotated[float, Unit("Pa", gt=0), YOUNGS_MODULUS]
 
 
-class LossTangent(Sourced):
+class LossTangent(TanDeltaLaw):
     """tan delta and its temperature law.
 
     ``exponential``: tan d = value exp(-rate (T - at))  (Clark & Dodge 1980, table 3, note 5, with
@@ -237,6 +240,15 @@ class LossTangent(Sourced):
         """tan delta(f, T), a function of frequency, Hz, and temperatures, degC."""
         return loss_over_frequency(self, self.frequency, master=self.law == "frequency")
 
+    @property
+    def depends_on_frequency(self) -> bool:
+        """True if the card gives tan delta over frequency."""
+        return self.frequency is not None
+
+    def tan_delta(self, temperature: Array, frequency: float) -> Array:
+        """tan delta at temperatures, degC, and a frequency, Hz."""
+        return self.over_frequency(frequency, temperature)
+
     def __call__(self, temperature: Array | float) -> Array:
         """tan delta at temperatures in degC, same shape; at the reference frequency, if it depends on frequency."""
         if self.law == "frequency":
@@ -250,6 +262,15 @@ class LossTangent(Sourced):
         # Rejected trial steps may have extreme temperatures: beyond these bounds the law is not meaningful.
         bounded = np.minimum(np.maximum(temperature, _RUBBER[0]), _RUBBER[1])
         return np.asarray(value * np.exp(-(self.rate or 0.0) * (bounded - self.at)))
+
+
+TAN_DELTA = TanDeltaLaw.plugin_kind = Kind(
+    "tan delta law",
+    "tan delta laws",
+    'law: Literal["..."]',
+    law_name,
+    lambda: dict.fromkeys(get_args(LossTangent.model_fields["law"].annotation), LossTangent),
+)
 
 
 class Cord(Sourced):
@@ -283,6 +304,7 @@ class MaterialCard(Card):
 
     ``softening`` applies to all moduli of the compound; cords have a table of softening too, or do not soften.
     ``strain_dependence`` applies to the compound's shear modulus and loss; cords do not depend on strain.
+    ``loss_tangent``: tan delta, by a shipped law or your own. ``friction``: of the tread on the road, likewise.
     """
 
     kind: ClassVar[str] = "material"
@@ -291,7 +313,7 @@ class MaterialCard(Card):
     conductivity: Conductivity
     density: Density
     specific_heat: SpecificHeat
-    loss_tangent: LossTangent
+    loss_tangent: Annotated[TanDeltaLaw, LawOfCard(TAN_DELTA, TanDeltaLaw, LossTangent)]
     shear_modulus: ShearModulus | None = None
     youngs_modulus: YoungsModulus | None = None
     cord: Cord | None = None
@@ -302,7 +324,7 @@ class MaterialCard(Card):
     expansion: ThermalExpansion | None = None
     fatigue: Fatigue | None = None
     wear: Wear | None = None
-    friction: RoadFriction | None = None
+    friction: Annotated[FrictionOnRoad, LawOfCard(FRICTION, FrictionOnRoad, RoadFriction)] | None = None
 
     @property
     def softens(self) -> bool:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
+from tyrefem.plugins.kind import is_ours, kind_of
+
 if TYPE_CHECKING:
     from tyrefem.materials.card import MaterialCard
 
@@ -87,6 +89,23 @@ READS: dict[str, Callable[[Cards], dict[str, tuple[str, ...]]]] = {
 def tables_read(law: str, cards: Cards) -> dict[str, tuple[str, ...]]:
     """Region -> tables of its card that a strain law reads."""
     return READS.get(law, read_by_unknown_law)(cards)
+
+
+def key_of(values: Any) -> str:
+    """Text of cards for the key of a cache; that of a user's law names the version of its file, too.
+
+    >>> key_of({"tread": (1.5, None)})
+    "{'tread': (1.5, None)} []"
+    """
+    return f"{values!r} {sorted(_user_modules(values))}"
+
+
+def _user_modules(value: Any) -> set[str]:
+    if isinstance(value, Mapping):
+        return set().union(*map(_user_modules, value.values()))
+    if isinstance(value, tuple | list):
+        return set().union(*map(_user_modules, value))
+    return {type(value).__module__} if kind_of(type(value)) is not None and not is_ours(type(value)) else set()
 
 
 def values_read(law: str, cards: Cards) -> dict[str, tuple[Any, ...]]:

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal, Self
+import functools
+from abc import abstractmethod
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,7 +13,9 @@ from pydantic import model_validator
 
 from tyrefem.cards import Temperature
 from tyrefem.errors import InputError
+from tyrefem.materials.law_of_card import law_name
 from tyrefem.materials.properties import Sourced
+from tyrefem.plugins import Kind, Range, Trial, trial
 from tyrefem.quantity import Unit
 
 Array = NDArray[np.float64]
@@ -19,7 +24,62 @@ Coefficient = Annotated[float, Unit("1", gt=0, le=5)]
 SLOWEST = 1e-6
 
 
-class RoadFriction(Sourced):
+class FrictionOnRoad(Sourced):
+    """Base of a user's law of friction, the table ``[friction]`` of a tread's card.
+
+    A subclass sets ``law: Literal["name"]``, its numbers as fields with units, and `mu`.
+    """
+
+    plugin_kind: ClassVar[Kind]
+    #: The law's table as in a file, with which `tyrefem check` tries it; only what has no default.
+    example: ClassVar[Mapping[str, Any]] = {}
+    if TYPE_CHECKING:
+        law: str
+
+    @abstractmethod
+    def mu(self, speed: Array, pressure: Array, temperature: Array) -> Array:
+        """Coefficient of friction at sliding speeds, m/s, contact pressures, Pa, and temperatures of the tread, degC.
+
+        The arguments may have several shapes; the coefficient has the shape that numpy gives them together.
+        """
+
+    @property
+    def depends_on_speed(self) -> bool:
+        """True if the coefficient may depend on sliding speed or temperature."""
+        return True
+
+    @property
+    def follows_temperature(self) -> bool:
+        """True if the coefficient may depend on the tread's temperature."""
+        return True
+
+    @property
+    def single(self) -> float | None:
+        """The coefficient, if it is the same everywhere; else None."""
+        return None
+
+    @property
+    def uncertain_fields(self) -> tuple[tuple[str, ...], ...]:
+        """None: temperatures do not depend on the table."""
+        return ()
+
+    def __call__(self, speed: Array | float, pressure: Array | float, temperature: Array | float) -> Array:
+        """`mu` of numbers or arrays, in their common shape."""
+        given = np.broadcast_arrays(*(np.asarray(value, dtype=float) for value in (speed, pressure, temperature)))
+        return np.broadcast_to(np.asarray(self.mu(*given), dtype=float), given[0].shape)
+
+    def trials(self) -> Iterator[Trial]:
+        """The coefficient from rest to fast sliding, of light to heavy contact, cold and hot."""
+        allowed = Range("1", 0.0, 5.0)
+        speeds, pressures = np.array([0.0, 1e-4, 1e-2, 1.0, 10.0, 60.0]), np.array([1e3, 1e5, 5e5, 5e6])
+        for temperature in (-20.0, 25.0, 100.0, 250.0):
+            grid = speeds[:, None], pressures[None, :], np.array(temperature)
+            words = f"mu(0 to 60 m/s, 1 to 5000 kPa, {temperature:g} degC)"
+            yield trial(words, functools.partial(self, *grid), allowed, (6, 4))
+        yield trial("mu(1 m/s, 300 kPa, 25 degC)", lambda: self(1.0, 3e5, 25.0), allowed)
+
+
+class RoadFriction(FrictionOnRoad):
     """Coulomb friction of a compound on a road. ``constant``, or a peak over the sliding speed (Savkoor 1965):
 
     mu = (mu_0 + (mu_m - mu_0) exp(-(h log10(v a/v_m))^2)) (p_0/p)^k,   a = 10^(-(temperature - at)/decade).
@@ -72,9 +132,18 @@ class RoadFriction(Sourced):
         return self
 
     @property
-    def uncertain_fields(self) -> tuple[tuple[str, ...], ...]:
-        """None: temperatures do not depend on the table."""
-        return ()
+    def depends_on_speed(self) -> bool:
+        """False for a constant."""
+        return self.law != "constant"
+
+    @property
+    def single(self) -> float | None:
+        """The constant, if it does not fall with the pressure."""
+        return self.coefficient if self.law == "constant" and not self.pressure_exponent else None
+
+    def mu(self, speed: Array, pressure: Array, temperature: Array) -> Array:
+        """As the call."""
+        return self(speed, pressure, temperature)
 
     @property
     def follows_temperature(self) -> bool:
@@ -101,3 +170,12 @@ class RoadFriction(Sourced):
         peak = np.exp(-((self.width * decades) ** 2))
         peak = np.where(speed > SLOWEST * self.peak_speed, peak, 0.0)
         return np.asarray(self.standstill + (self.coefficient - self.standstill) * peak)
+
+
+FRICTION = FrictionOnRoad.plugin_kind = Kind(
+    "friction law",
+    "friction laws",
+    'law: Literal["..."]',
+    law_name,
+    lambda: dict.fromkeys(get_args(RoadFriction.model_fields["law"].annotation), RoadFriction),
+)

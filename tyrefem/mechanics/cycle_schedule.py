@@ -210,7 +210,7 @@ def _speed_matters(study: StudyData) -> bool:
     if study.card.mechanics.rolling:
         return True
     laws = (card.friction for card in study.materials.values())
-    return study.card.boundaries.sliding.rolls and any(law is not None and law.law != "constant" for law in laws)
+    return study.card.boundaries.sliding.rolls and any(law is not None and law.depends_on_speed for law in laws)
 
 
 def check_cases(study: StudyData) -> None:

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from tyrefem.errors import InputError
 from tyrefem.estimates import work as estimate
 from tyrefem.inputs.study import StudyData
+from tyrefem.inputs.study_plugins import plugin_summary
 from tyrefem.output import versions
 from tyrefem.realtime.export import arrays_of, outputs_of, write
 from tyrefem.realtime.inputs import NAMES, Box, BoxDrive, box_of, random_drive, steady
@@ -319,4 +320,5 @@ class _Training:
             "start": self._start(),
             "modes": self.reduced.size,
             "versions": versions(),
+            **plugin_summary(self.study),
         }

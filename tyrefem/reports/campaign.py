@@ -8,6 +8,7 @@ from glob import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from tyrefem.inputs.study_plugins import plugin_summary
 from tyrefem.interruption import interruption_delayed
 from tyrefem.output import atomic_path, versions, write_json
 from tyrefem.reports.figures.style import FONT, TITLE, add_axes, figure, line_style, plain, png, short, tidy, title
@@ -85,6 +86,7 @@ def _summary(campaign: CampaignData, table: pd.DataFrame, complete: bool) -> dic
         "tolerance_K": campaign.study.tolerance,
         "mesh": campaign.study.card.mesh.model_dump(),
         "versions": versions(),
+        **plugin_summary(campaign.study, [dict(case.changes) for case in campaign.cases]),
         "random_seed": None,
         "input": dict(campaign.study.data),
     }

@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from tyrefem.inputs.study_plugins import plugin_summary
 from tyrefem.output import atomic_folder, write_json
 
 if TYPE_CHECKING:
@@ -45,6 +46,7 @@ def write_files(
             "critical": rows,
             "waves": waves,
             "versions": versions(),
+            **plugin_summary(study),
         }
         if rises:
             (place / "rise.csv").write_text(_table([row for rise in rises for row in rise.rows()]), encoding="utf-8")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from tyrefem.inputs.study_plugins import plugin_summary
 from tyrefem.output import atomic_folder, write_json
 from tyrefem.tyre_forces.property_file import tir_text
 
@@ -34,6 +35,7 @@ def summary(forces: TyreForces) -> dict[str, Any]:
         "magic_formula": forces.fit.summary(),
         "points": list(forces.rows),
         "versions": versions(),
+        **plugin_summary(forces.study),
     }
 
 

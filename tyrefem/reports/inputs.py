@@ -18,10 +18,11 @@ if TYPE_CHECKING:
     from tyrefem.cards import Card
     from tyrefem.inputs.study import StudyData
     from tyrefem.inputs.study_card import Feedback, Mechanics
-    from tyrefem.materials.card import LossTangent, MaterialCard
+    from tyrefem.materials.card import MaterialCard
     from tyrefem.materials.elasticity import Cords
     from tyrefem.materials.properties import Softening
     from tyrefem.materials.strain_dependence import StrainDependence
+    from tyrefem.materials.tan_delta_law import TanDeltaLaw
     from tyrefem.mechanics.stored_cycles import PressedCycle
 
 
@@ -74,7 +75,11 @@ def _properties(card: MaterialCard) -> Iterator[tuple[str, Any, str]]:
         yield "cords", card.cords, _cords(card.cords)
 
 
-def _loss(loss: LossTangent) -> str:
+def _loss(loss: TanDeltaLaw) -> str:
+    from tyrefem.materials.card import LossTangent
+
+    if not isinstance(loss, LossTangent):
+        return f"{loss.law}: {'; '.join(_numbers(loss))}"
     if loss.law == "exponential":
         law = f"{number(loss.value or 0)} exp(−{number(loss.rate or 0)} (T − {number(loss.at)} °C))"
     else:
@@ -328,7 +333,7 @@ def assumptions(study: StudyData, estimates: list[str]) -> list[tuple[str, str]]
     if slip is FREE and not all(effect.free_rolling for effect in study.effects):
         slip = {name: f"{text} The study's effects are added to this." for name, text in FREE.items()}
     stated = [always[0], *slip.items(), *locked.items(), *always[1:]]
-    over_frequency = [region for region, card in study.materials.items() if card.loss_tangent.frequency is not None]
+    over_frequency = [region for region, card in study.materials.items() if card.loss_tangent.depends_on_frequency]
     laws = "depends on temperature, not on frequency"
     if over_frequency:
         laws = f"depends on temperature, and on frequency in: {', '.join(over_frequency)}"

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.fatigue.places import FailurePlace, first_places
+from tyrefem.inputs.study_plugins import plugin_summary
 from tyrefem.interruption import keeping
 from tyrefem.output import atomic_folder, versions, write_json
 from tyrefem.reports.figures.style import png
@@ -79,6 +80,7 @@ def summary(life: LifeData, shifts: Sequence[LifeShift] = ()) -> dict[str, Any]:
         "cards": {region: _card(life, region) for region in life.regions},
         "mesh": {"elements": len(life.km), "nodes_of_nine_node_elements": life.rings.n_nodes},
         "versions": versions(),
+        **plugin_summary(life.study),
     }
 
 

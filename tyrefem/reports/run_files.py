@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tyrefem.inputs.published import PublishedComparison, compared, of_footprint
+from tyrefem.inputs.study_plugins import plugin_summary
 from tyrefem.output import atomic_path, versions, write_json
 
 if TYPE_CHECKING:
@@ -107,6 +108,7 @@ def summary(result: ResultData) -> dict[str, Any]:
         "section": study.section.summary(),
         "wall_time_s": result.wall_time,
         "versions": versions(),
+        **plugin_summary(study),
         "random_seed": None,
         "input": dict(study.data),
     }

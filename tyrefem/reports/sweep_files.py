@@ -6,6 +6,7 @@ import importlib.metadata
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from tyrefem.inputs.study_plugins import plugin_summary
 from tyrefem.output import atomic_path, versions, write_json
 from tyrefem.reports.sweep import FILES as LIST
 from tyrefem.reports.sweep import clear, earlier, write_page
@@ -19,18 +20,28 @@ if TYPE_CHECKING:
     from tyrefem.sweep.design import DesignData
 
 PAGE = "sweep.html"
-#: Answers with tables, and the files that `save` may write.
-PARTS = ("sweep", "pareto", "indices", "optimum", *sweep_questions())
-PICTURES = ("map-*.png", "curves-*.png", "bars-*.png", "pareto*.png", "indices-*.png", "optimum.png",
-            *(f"{key}*.png" for key in sweep_questions()))  # fmt: skip
-FILES = (
-    *(f"{name}.{kind}" for name in PARTS for kind in ("csv", "parquet")),
-    "errors.csv",
-    PAGE,
-    *(f"pictures/{name}" for name in PICTURES),
-)
-#: Files that keep finished variants.
-KEPT = (VARIANTS, *(f"{name}/{VARIANTS}" for name in PARTS))
+
+
+def part_names() -> tuple[str, ...]:
+    """Names of the answers with tables, those of plugins too."""
+    return ("sweep", "pareto", "indices", "optimum", *sweep_questions())
+
+
+def file_names() -> tuple[str, ...]:
+    """The files that `save` may write."""
+    pictures = ("map-*.png", "curves-*.png", "bars-*.png", "pareto*.png", "indices-*.png", "optimum.png",
+                *(f"{key}*.png" for key in sweep_questions()))  # fmt: skip
+    return (
+        *(f"{name}.{kind}" for name in part_names() for kind in ("csv", "parquet")),
+        "errors.csv",
+        PAGE,
+        *(f"pictures/{name}" for name in pictures),
+    )
+
+
+def kept_names() -> tuple[str, ...]:
+    """The files that keep finished variants."""
+    return (VARIANTS, *(f"{name}/{VARIANTS}" for name in part_names()))
 
 
 def save(design: DesignData, folder: Path, *, pictures: bool = True) -> dict[str, Any]:
@@ -86,10 +97,16 @@ def summarised(design: DesignData) -> dict[str, Any]:
         "tolerance_K": study.tolerance,
         "mesh": study.card.mesh.model_dump(),
         "versions": versions() | {"SALib": importlib.metadata.version("SALib")},
+        **plugin_summary(study, _variants(design), [part.name for part in design.parts]),
         "random_seed": card.seed,
         "input": dict(study.data),
         "words": text_lines(design),
     }
+
+
+def _variants(design: DesignData) -> list[dict[str, Any]]:
+    """The changes of all variants."""
+    return [] if design.swept is None else [dict(variant) for variant in design.swept.plan.variants]
 
 
 def sample_summary(sweep: Sweep) -> dict[str, Any]:

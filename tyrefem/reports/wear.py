@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tyrefem.inputs.study_plugins import plugin_summary
 from tyrefem.output import atomic_folder, versions, write_json
 from tyrefem.quantity import written
 from tyrefem.reports.figures.style import FONT, add_axes, figure, line_style, png, tidy, title
@@ -82,6 +83,7 @@ def summary(study: StudyData, rolled: RolledStudy | None, wear: RingWear) -> dic
         "mass_mg_per_km": wear.volume_per_km * density * 1e6,
         "card": wear.table.model_dump(),
         "versions": versions(),
+        **plugin_summary(study),
     }
 
 

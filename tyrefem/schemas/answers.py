@@ -11,7 +11,10 @@ from collections.abc import Mapping
 Keys = Mapping[str, str]
 
 _STUDY = {"study": "text: Name of the study.", "title": "text: Title of the study."}
-_VERSIONS = {"versions": "table: Versions of tyrefem, Python and the libraries that influence results."}
+_VERSIONS = {
+    "versions": "table: Versions of tyrefem, Python and the libraries that influence results.",
+    "plugins*": "list: Your own effects, laws and answers that were used: kind, name, class, file or package, sha256.",
+}
 _FOLDER = {
     "command": "text: The command that wrote the folder.",
     "complete": "truth: False after an interruption.",
@@ -135,7 +138,7 @@ ANSWERS: dict[str, Keys] = {
         "failures": "table: Variant -> why it failed.", "sweep*": "table: Main effects of the varied numbers.",
         "pareto*": "table: Variants of the Pareto front.", "indices*": "table: Sobol indices.",
         "tornado*": "table: Range of each answer by each tolerance.", "optimum*": "table: The best variant.",
-        "envelope*": "table: Largest speed by load and pressure.",
+        "envelope*": "table: Largest speed by load and pressure.", "*": "any: Answers of your own, by name.",
     },
     "export": {
         "steady": "table: Largest errors in steady drives, K (rolling_resistance: N).",
@@ -282,10 +285,15 @@ ANSWERS: dict[str, Keys] = {
         **_PICTURE, "rows": "list: Rise and friction by speed.",
         "decomposition_from_km_h": "number: Speed from which decomposition limits friction.",
     },
-    "check": {"file": "text: The file.", "words": "text: What the file is."},
-    "list": {"kind": "text: What is listed.", "entries": "list: Name and title, with file, side or family."},
+    "check": {
+        "file": "text: The file.", "words": "text: What the file is.",
+        "plugins*": "list: Effects, laws and answers of a Python file, each with its contracts.",
+        "failures*": "list: What of a Python file cannot be used, and why.",
+        "contracts*": "integer: Number of contracts.", "failed*": "integer: Number of contracts that are not kept.",
+    },
+    "list": {"kind": "text: What is listed.", "entries": "list: Name and title, with file, side, family or plugin."},
     "new": {
-        "kind": "text: study, section or material.", "file": "text: The new file.",
+        "kind": "text: study, section, material, or kind of plugin.", "file": "text: The new file.",
         "copy_of*": "text: The card that was copied.", "note*": "text: Numbers that hold for one tyre only.",
         "size*": "text: The size.", "rules*": "text: Rules of the size.",
         "outer_diameter_m*": "number: Outer diameter.", "overall_width_m*": "number: Overall width.",

@@ -60,7 +60,7 @@ class EffectStates:
         initial: list[Array] = []
         size = 0
         for effect in effects:
-            given = _checked(effect, effect.initial_states(tyre), "initial_states")
+            given = checked_states(effect, effect.initial_states(tyre), "initial_states")
             for name, state in effect.states.items():
                 value = given[name]
                 self.places.append(_Place(effect, name, state, slice(size, size + value.size), value.shape))
@@ -80,7 +80,7 @@ class EffectStates:
         for key, effect in effects.items():
             mine = [place for place in self.places if _key(place.effect) == key]
             state = {place.name: self._value(place, z) for place in mine}
-            given = _checked(effect, effect.state_rates(tyre, t, state, temperatures), "state_rates")
+            given = checked_states(effect, effect.state_rates(tyre, t, state, temperatures), "state_rates")
             for place in mine:
                 if given[place.name].shape != place.shape:
                     words = f"state '{place.name}' has the shape {place.shape}, its rate {given[place.name].shape}"
@@ -130,7 +130,7 @@ class EffectStates:
         }
 
 
-def _checked(effect: Effect, given: Mapping[str, Value], method: str) -> dict[str, Array]:
+def checked_states(effect: Effect, given: Mapping[str, Value], method: str) -> dict[str, Array]:
     """Check the return value of an effect's method: state -> array () or (n,)."""
     field = f"effects.{effect.name}.{method}"
     if not isinstance(given, Mapping) or set(given) != set(effect.states):

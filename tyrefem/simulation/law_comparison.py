@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.errors import InputError
+from tyrefem.inputs.study_plugins import plugin_summary
 from tyrefem.mechanics.finite_elements import GaussPoints
 from tyrefem.mechanics.strain_cycle import StrainCycle, Zone
 from tyrefem.mechanics.strain_laws import strain_laws
@@ -217,6 +218,7 @@ class LawComparison:
             "refused": self.refused,
             "mesh": self.mesh.summary(),
             "versions": versions(),
+            **plugin_summary(self.study, list(laws)),
         }
 
 

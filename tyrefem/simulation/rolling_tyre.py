@@ -20,6 +20,9 @@ from tyrefem.geometry.meshing import TyreMesh
 from tyrefem.mechanics.cycle_schedule import REMEMBERED, CycleSchedule, same_cycles
 from tyrefem.mechanics.nearby_cycles import NearbyCycles
 from tyrefem.mechanics.strain_cycle import LOSS_FACTOR
+from tyrefem.mechanics.strain_laws import strain_law
+from tyrefem.mechanics.user_cycle import of_present_law
+from tyrefem.simulation.effect_trials import check_effects_on
 from tyrefem.simulation.heat_budget import FRICTION
 from tyrefem.simulation.heat_source import HeatSource
 from tyrefem.simulation.rolling_tread import RollingTread
@@ -90,7 +93,9 @@ class RollingTyre(Surroundings):
             return self.near.schedule
         like = self.similar
         if like is not None and like.cycles is None and same_cycles(self.study, like.study):
-            return like.schedule
+            schedule = like.schedule
+            if of_present_law(schedule.cycles[0][0], type(strain_law(self.study))):
+                return schedule
         nearby = None if self._nearby is None else self._nearby.schedule_of(self.study)
         return super().schedule if nearby is None else nearby
 
@@ -231,7 +236,7 @@ class RollingTyre(Surroundings):
         factor, sources = LOSS_FACTOR[self.study.card.mechanics.loss_convention], {}
         for zone in self.schedule.zones:
             law = self.study.materials[zone.region].loss_tangent
-            over_frequency = None if law.frequency is None else law.over_frequency
+            over_frequency = law.over_frequency if law.depends_on_frequency else None
             sources[zone.name] = HeatSource(zone.name, self.schedule, self.motion, law, factor, over_frequency)
         return sources
 
@@ -261,7 +266,8 @@ class RollingTyre(Surroundings):
 
         Raises
         ------
-        InputError : the study has feedback, but no strain cycles at its temperatures are given.
+        InputError : the study has feedback, but no strain cycles at its temperatures are given; a user's own effect
+            gives values that are not finite or of another shape.
         """
         if self.cycles is None and self.study.card.mechanics.feedback is not None:
             raise InputError(
@@ -270,6 +276,8 @@ class RollingTyre(Surroundings):
                 field="mechanics.feedback",
                 file=self.study.file,
             )
+        if self.similar is None:
+            check_effects_on(self)
         return Conduction(
             self.mesh.mesh,
             self.bodies,

@@ -17,6 +17,7 @@ from tyrefem.sweep.pareto import ParetoFront
 from tyrefem.sweep.part import DesignPart
 from tyrefem.sweep.question import SweepQuestion, questions_of, sweep_questions, with_further_tables
 from tyrefem.sweep.responses import Responses, judged
+from tyrefem.sweep.sample_answer import SampleAnswer
 from tyrefem.sweep.sobol_indices import Indices
 from tyrefem.sweep.sweep import Sweep, sweep
 from tyrefem.sweep.tornado import Tornado
@@ -148,7 +149,7 @@ class Questions:
         """
         card, execution = self.card, (execution or Execution()).given(options)
         swept = best = None
-        answers: dict[str, DesignPart] = {}
+        answers: dict[str, Any] = {}
         interrupted = ""
         try:
             if card.sampled:
@@ -157,7 +158,10 @@ class Questions:
             if card.optimise is not None and not interrupted:
                 best = optimum(self.plan, card.optimise, execution.within(Optimum.name), known=swept)
             for question in self.further:
-                if not interrupted:
+                if isinstance(question, SampleAnswer):
+                    if swept is not None and swept.outcomes:
+                        answers[question.key] = question.of(swept)
+                elif not interrupted:
                     answers[question.key] = question.answered(execution.within(question.key))
                     interrupted = getattr(answers[question.key], "interrupted", "")
         except KeyboardInterrupt:

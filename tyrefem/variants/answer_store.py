@@ -16,10 +16,11 @@ from typing import Any
 import numpy as np
 
 from tyrefem import library
-from tyrefem.effects import catalogue
+from tyrefem.effects import shipped_effects
 from tyrefem.inputs.study import StudyData
 from tyrefem.interruption import interruption_delayed
 from tyrefem.output import atomic_path, jsonable
+from tyrefem.plugins import sent
 from tyrefem.sizes import completed_materials
 
 #: Folder within ``--out`` that holds finished simulations until the command ends.
@@ -85,10 +86,15 @@ class AnswerStore:
         return self._place / f"{name}-{digest(plain(question))[:24]}.npz"
 
 
-@functools.cache
 def effects_source() -> str:
-    """Digest of the effects' files: a user may change an effect before resuming."""
-    files = {str(sys.modules[effect.__module__].__file__) for effect in catalogue().values()}
+    """Digest of the effects' files and of the user's plugins: a user may change a law before resuming."""
+    plugins = sent().digest
+    return digest([_shipped_source(), plugins]) if plugins else _shipped_source()
+
+
+@functools.cache
+def _shipped_source() -> str:
+    files = {str(sys.modules[effect.__module__].__file__) for effect in shipped_effects().values()}
     return digest([Path(file).read_text(encoding="utf-8") for file in sorted(files)])
 
 

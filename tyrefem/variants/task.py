@@ -10,7 +10,7 @@ import tempfile
 import threading
 import uuid
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -19,6 +19,7 @@ from tyrefem import library
 from tyrefem.cache import Cache
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
+from tyrefem.plugins import Sent, receive, sent
 from tyrefem.variants.outcomes import Answered, Failed, Outcome
 
 if TYPE_CHECKING:
@@ -36,20 +37,35 @@ class Bundle:
     Parameters
     ----------
     name : of the study. data : the study; its references point into ``files``. files : name -> bytes.
-    version : of the package that packed the study.
+    version : of the package that packed the study. plugins : the user's own effects and laws.
     """
 
     name: str
     data: Mapping[str, Any]
     files: Mapping[str, bytes]
     version: str = tyrefem.__version__
+    plugins: Sent = field(default_factory=Sent)
 
     @property
     def digest(self) -> str:
         """Digest of the study and its files; the package's version stands for the shipped cards."""
         heads = {name: hashlib.sha256(content).hexdigest() for name, content in sorted(self.files.items())}
-        text = json.dumps([self.version, self.name, self.data, heads], sort_keys=True, default=str)
+        plugins = [self.plugins.digest] if self.plugins.digest else []
+        text = json.dumps([self.version, self.name, self.data, heads, *plugins], sort_keys=True, default=str)
         return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+    def check_versions(self) -> None:
+        """Take the user's plugins as they were sent.
+
+        Raises
+        ------
+        VersionError : the study was packed by another version of the package, or of a plugin's package.
+        """
+        if self.version != tyrefem.__version__:
+            raise VersionError(f"the study is from tyrefem {self.version}, but this worker has {tyrefem.__version__}")
+        missing = receive(self.plugins)
+        if missing:
+            raise VersionError(f"{missing} on this worker")
 
     def unpacked(self, folder: Path) -> StudyData:
         """The study, with its files written to a folder.
@@ -58,8 +74,7 @@ class Bundle:
         ------
         VersionError : the study was packed by another version of the package.
         """
-        if self.version != tyrefem.__version__:
-            raise VersionError(f"the study is from tyrefem {self.version}, but this worker has {tyrefem.__version__}")
+        self.check_versions()
         for name, content in self.files.items():
             # Another thread may be reading the same file.
             temporary = folder / f"{name}-{uuid.uuid4().hex}"
@@ -89,7 +104,7 @@ def bundle(study: StudyData) -> Bundle:
     mesh = data.get("mesh", {})
     if isinstance(mesh.get("file"), str):
         mesh["file"] = _kept((near or Path()) / mesh["file"], files)
-    return Bundle(study.name, data, files)
+    return Bundle(study.name, data, files, plugins=sent())
 
 
 def _packed(kind: str, reference: Any, near: Path | None, files: dict[str, bytes]) -> Any:
@@ -140,6 +155,7 @@ def unpacked(packed: Bundle) -> StudyData:
     ------
     VersionError : the study was packed by another version of the package.
     """
+    packed.check_versions()
     return _studies.get(packed.digest, lambda: packed.unpacked(_folder(packed.digest)))
 
 

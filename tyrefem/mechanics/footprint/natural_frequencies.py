@@ -13,6 +13,7 @@ from tyrefem.brief import Brief
 from tyrefem.errors import InputError
 from tyrefem.estimates import work as estimate
 from tyrefem.geometry.meshing.expected import QUADRATIC
+from tyrefem.inputs.study_plugins import plugin_summary
 from tyrefem.materials.card import strain_laws
 from tyrefem.mechanics.footprint.harmonics import Harmonics
 from tyrefem.mechanics.footprint.pressed_tyre import mechanical_mesh
@@ -137,6 +138,7 @@ class NaturalFrequencies(Brief):
             "modulus_over_that_of_the_card": dict(self.stiffening),
             "nodes_of_nine_node_elements": self.tyre.body.rings.n_nodes,
             "versions": versions(),
+            **plugin_summary(self.study),
         }
 
 

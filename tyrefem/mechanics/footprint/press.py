@@ -16,6 +16,7 @@ from tyrefem.estimates import work as estimate
 from tyrefem.geometry.meshing.expected import QUADRATIC
 from tyrefem.inputs.motion import motion_in
 from tyrefem.inputs.study_card import FootprintMotion
+from tyrefem.inputs.study_plugins import plugin_summary
 from tyrefem.mechanics.footprint.footprint import QUICK_LOOK
 from tyrefem.mechanics.footprint.pressed_tyre import TOLERANCE, mechanical_mesh
 from tyrefem.mechanics.footprint.road import Road
@@ -209,6 +210,7 @@ class Pressed(Brief):
             **({} if self.turning is None else {"rolling": self.turning.summary()}),
             "mesh": {**self.mesh.summary(), "nodes_of_nine_node_elements": self.tyre.body.rings.n_nodes},
             "versions": versions(),
+            **plugin_summary(self.study),
         }
 
 

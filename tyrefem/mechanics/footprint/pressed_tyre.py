@@ -14,7 +14,7 @@ from tyrefem.errors import InputError
 from tyrefem.estimates import work as estimate
 from tyrefem.geometry import meshing
 from tyrefem.geometry.meshing.expected import QUADRATIC, expected_nodes
-from tyrefem.materials.reads import values_read
+from tyrefem.materials.reads import key_of, values_read
 
 if TYPE_CHECKING:
     from tyrefem.geometry.meshing.mesh import TyreMesh
@@ -214,4 +214,4 @@ def inputs(study: StudyData) -> Hashable:
         path = (study.folder or Path()) / choice.file
         content = hashlib.sha256(path.read_bytes()).hexdigest() if path.is_file() else ""
     read = values_read("fem", study.materials)
-    return study.section, repr(choice), content, study.card.mechanics.moduli, repr(read)
+    return study.section, repr(choice), content, study.card.mechanics.moduli, key_of(read)

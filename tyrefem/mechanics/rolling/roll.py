@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
 from tyrefem.errors import InputError
+from tyrefem.inputs.study_plugins import plugin_summary
 from tyrefem.mechanics.footprint.compliance import TreadCompliance
 from tyrefem.mechanics.footprint.contact import LADDER
 from tyrefem.mechanics.footprint.press import Pressed
@@ -26,7 +27,7 @@ from tyrefem.requirements import Requirements
 
 if TYPE_CHECKING:
     from tyrefem.inputs.study import StudyData
-    from tyrefem.materials.road_friction import RoadFriction
+    from tyrefem.materials.road_friction import FrictionOnRoad
 
 Array = NDArray[np.float64]
 #: Requirements of rolling on the study.
@@ -148,6 +149,7 @@ class RolledStudy(Brief):
             "error": self.error,
             "motion": pressed.footprint.motion,
             "versions": versions(),
+            **plugin_summary(self.study),
         }
 
 
@@ -183,7 +185,7 @@ def road_region(mesh: Any, boundary: str = "road") -> str:
     return max(shares, key=lambda name: shares[name])
 
 
-def friction_card(pressed: Pressed) -> RoadFriction | None:
+def friction_card(pressed: Pressed) -> FrictionOnRoad | None:
     """Friction of the card of the region that meets the road."""
     state = pressed.tyre.state
     return pressed.study.materials[road_region(state.mesh, state.tread)].friction
@@ -195,8 +197,8 @@ def tread_friction(pressed: Pressed, temperature: float | None = None) -> float 
     law = friction_card(pressed)
     if law is None:
         return FRICTION
-    if law.law == "constant" and not law.pressure_exponent:
-        return law.coefficient
+    if law.single is not None:
+        return law.single
     warm = float(pressed.study.card.drive.initial) if temperature is None else temperature
     return lambda speed, pressure: law(speed, pressure, warm)
 

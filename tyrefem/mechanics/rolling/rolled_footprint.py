@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from tyrefem.cache import Cache
 from tyrefem.errors import InputError
-from tyrefem.materials.reads import FEM_ROLLING, values_read
+from tyrefem.materials.reads import FEM_ROLLING, key_of, values_read
 from tyrefem.mechanics.footprint.footprint import Footprint
 from tyrefem.mechanics.footprint.pressed_tyre import inputs
 from tyrefem.mechanics.footprint.strain_harmonics import StrainHarmonics
@@ -219,11 +219,11 @@ def _warm(study: StudyData, case: LoadCase) -> float | None:
 
 def _tyre_key(study: StudyData, case: LoadCase) -> Hashable:
     frictions = {region: card.friction for region, card in study.materials.items()}
-    key: tuple[Hashable, ...] = (inputs(study), repr(frictions), case.pressure, case.drum_diameter, _speed(case))
+    key: tuple[Hashable, ...] = (inputs(study), key_of(frictions), case.pressure, case.drum_diameter, _speed(case))
     if study.card.mechanics.rolling:
         # Loss is that of the regions' temperatures.
         warmth = (study.card.drive.initial, tuple((study.parts.temperatures or {}).items()))
-        key += (repr(values_read(FEM_ROLLING, study.materials)), *warmth, _given(case))
+        key += (key_of(values_read(FEM_ROLLING, study.materials)), *warmth, _given(case))
     if study.card.mechanics.motion == "large":
         key += (_given(case),)
     return (study.card.mechanics.motion, *key)

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
 from tyrefem.errors import InputError
+from tyrefem.inputs.study_plugins import plugin_summary
 from tyrefem.mechanics.footprint.natural_frequencies import AMPLITUDE
 from tyrefem.mechanics.rolling.roll import (
     SMALL_ANGLE,
@@ -132,6 +133,7 @@ class SlipCurve(Brief):
             "error": self.error,
             "motion": self.wheel.pressed.footprint.motion,
             "versions": versions(),
+            **plugin_summary(self.study),
         }
 
 

@@ -1,0 +1,120 @@
+"""docs/extending.md: its files are the templates, they keep their contracts, and its tables choose them."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import tyrefem as tf
+from tyrefem.contracts import TEMPLATES, check_file, template
+from tyrefem.contracts.contract import Contract
+from tyrefem.inputs.study_plugins import plugins_of
+from tyrefem.materials.card import material
+from tyrefem.plugins import registry
+
+ROOT = Path(__file__).resolve().parents[2]
+PAGE = (ROOT / "docs/extending.md").read_text(encoding="utf-8")
+#: The page's parts after the contracts: a Python file, then the table that chooses it.
+PARTS = dict(zip(TEMPLATES, re.findall(r"^```python\n(.*?)^```\n\n```toml\n(.*?)^```", PAGE, re.M | re.S), strict=True))
+COARSE = {"mesh.size": "12 mm", "mesh.element": "P1", "drive.duration": "60 s"}
+Write = Callable[..., Path]
+
+
+@pytest.mark.parametrize("kind", TEMPLATES)
+def test_the_page_shows_the_template_and_it_keeps_its_contracts(folder: Path, kind: str) -> None:
+    code, _ = PARTS[kind]
+    assert code == template(kind, TEMPLATES[kind])
+    file = folder / "shown.py"
+    file.write_text(code, encoding="utf-8")
+    checked = check_file(file)
+    assert [plugin.name.split(".")[-1] for plugin, _ in checked.plugins] == [TEMPLATES[kind]]
+    assert [contract.line for _, contracts in checked.plugins for contract in contracts if contract.fault] == []
+    assert checked.count >= 4
+
+
+def chosen(kind: str) -> dict[str, Any]:
+    return tomllib.loads(PARTS[kind][1])
+
+
+@pytest.mark.parametrize("kind", ["effect", "boundary-law", "tan-delta-law", "strain-law"])
+def test_a_study_with_the_page_s_table_uses_it(write: Write, kind: str) -> None:
+    file = write(kind)
+    table = chosen(kind)
+    if kind == "effect":
+        changes: dict[str, Any] = table
+    else:
+        changes = {f"{head}.{key}": value for head, part in table.items() for key, value in part.items()}
+    study = tf.study("nasa-22x5.5-8pr", COARSE)
+    changed = study.replace(changes)
+    (plugin,) = plugins_of(changed)
+    assert plugin.origin.file == file
+    before, after = study.run().readings, changed.run().readings
+    assert not before.equals(after)
+    summary = changed.run().summary()["plugins"]
+    assert summary == [plugin.to_dict()]
+    assert set(summary[0]) == {"kind", "name", "class", "file", "version", "sha256"}
+    assert study.run().summary()["plugins"] == []
+
+
+def test_the_tread_of_the_page_has_its_friction(write: Write) -> None:
+    write("friction-law")
+    law = material({"base": "nasa-tread", **chosen("friction-law")}).friction
+    assert law is not None
+    assert float(law(0.0, 3e5, 25.0)) == pytest.approx(1.1)
+    assert float(law(50.0, 3e5, 25.0)) == pytest.approx(0.55)
+
+
+def test_the_sweep_of_the_page_has_its_answer(write: Write, tmp_path: Path) -> None:
+    write("sweep-answer")
+    file = tmp_path / "sweep.toml"
+    text = PARTS["sweep-answer"][1].replace("levels = 5", "levels = 2")
+    file.write_text(text, encoding="utf-8")
+    from tyrefem.reports.sweep_files import save
+    from tyrefem.sweep.design import loaded
+
+    changes = {**COARSE, "output.fields": 2}
+    design = loaded(str(file), changes).answered(reduced="never")
+    rows = design.answers["highest"].table
+    assert rows["contained-air_degC"].is_monotonic_decreasing
+    summary = save(design, tmp_path / "out")
+    assert {path.name for path in (tmp_path / "out").iterdir()} >= {"highest.csv", "highest.parquet", "sweep.html"}
+    assert "Highest values" in (tmp_path / "out/sweep.html").read_text(encoding="utf-8")
+    assert [entry["name"] for entry in summary["plugins"]] == ["highest"]
+
+
+def test_a_broken_contract_is_said_in_words(write: Write) -> None:
+    file = write("tan-delta-law", ("np.exp(self.activation", "np.mean(temperature) * np.exp(self.activation"))
+    (_, contracts) = check_file(file).plugins[0]
+    faults: list[Contract] = [contract for contract in contracts if contract.fault]
+    assert any("tan_delta(-40 to 200 degC, 10 Hz) must be finite numbers" in str(each.fault) for each in faults)
+
+
+@pytest.mark.parametrize(
+    ("kind", "change", "words"),
+    [
+        ("effect", ("return self.shine", "return 1 + self.shine"), "flux gives 1.0 at null; it must give 0"),
+        ("effect", ("return self.shine", "return self.shine * x[0] / x[0].sum()"), "at a point among"),
+        ("tan-delta-law", ("self.value *", "frequency**0.1 * self.value *"), "of_frequency: ClassVar[bool] = True"),
+        ("strain-law", ("self.ratio**2", "self.ratio"), "twice the deflection gives"),
+        ("strain-law", ("in self.section.regions)", "in self.section.regions[1:])"), "have none, and no heat"),
+        ("boundary-law", ('{"at_10_m_s": "30 W/m**2/K"}', "{}"), "give values in example"),
+        ("sweep-answer", ("return ordered", "return []\n        return ordered"), "a pandas DataFrame, not list"),
+        ("friction-law", ('law: Literal["falling"]', 'law: str = "falling"'), "has no name, so nothing can use it"),
+    ],
+)  # fmt: skip
+def test_what_breaks_a_contract(write: Write, kind: str, change: tuple[str, str], words: str) -> None:
+    checked = check_file(write(kind, change))
+    assert checked.failed >= 1
+    assert words in "\n".join(checked.lines)
+
+
+def test_a_file_without_a_plugin_is_refused(folder: Path) -> None:
+    (folder / "nothing.py").write_text("x = 1\n", encoding="utf-8")
+    with pytest.raises(tf.InputError, match="has no plugin"):
+        check_file(folder / "nothing.py")
+    assert registry().plugins == ()

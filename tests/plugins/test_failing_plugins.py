@@ -1,0 +1,219 @@
+"""A failing plugin names file, class and what was expected; it never takes the rest down."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+import tyrefem as tf
+from tyrefem.boundaries import laws
+from tyrefem.effects import catalogue
+from tyrefem.errors import PluginWarning
+from tyrefem.mechanics.strain_laws import strain_laws
+from tyrefem.plugins import registry, use
+from tyrefem.sweep.question import sweep_questions
+
+pytestmark = pytest.mark.fast
+
+Write = Callable[..., Path]
+COARSE = {"mesh.size": "12 mm", "mesh.element": "P1", "drive.duration": "60 s"}
+FILM = {"law": "power-film", "at_10_m_s": "30 W/m**2/K"}
+LOSS = {"law": "arrhenius", "value": 0.2, "activation": "800 K", "source": "estimate: a test"}
+FRICTION = {"law": "falling", "at_rest": 1.1, "source": "estimate: a test"}
+#: Kind -> changes of a study that use its template.
+USES = {
+    "effect": {"effects": [{"name": "lamp", "shine": "50 W/m**2"}]},
+    "boundary-law": {"boundaries.outside_air": FILM},
+    "tan-delta-law": {"materials.tread": {"base": "nasa-tread", "loss_tangent": LOSS}},
+    "strain-law": {"mechanics.strain": "crown-to-bead"},
+    "friction-law": {"materials.tread": {"base": "nasa-tread", "friction": FRICTION}},
+}
+SIGNATURES = {
+    "effect": ("def flux(self, tyre, surface, x, t)", "def flux(self, tyre, x)", "flux(self, tyre, surface, x, t)"),
+    "boundary-law": ("def film(self, speed)", "def film(self)", "film(self, speed)"),
+    "tan-delta-law": (
+        "(self, temperature, frequency)",
+        "(self, temperature)",
+        "tan_delta(self, temperature, frequency)",
+    ),
+    "strain-law": ("def provider(self, study)", "def provider(self)", "provider(self, study)"),
+    "friction-law": ("(self, speed, pressure, temperature)", "(self, speed)", "mu(self, speed, pressure, temperature)"),
+    "sweep-answer": ("def rows(self, variants)", "def rows(self)", "rows(self, variants)"),
+}
+
+
+def study(changes: dict) -> tf.Study:
+    return tf.study("nasa-22x5.5-8pr", {**COARSE, **changes})
+
+
+@pytest.mark.parametrize("kind", SIGNATURES)
+def test_a_wrong_signature_is_found_at_loading(write: Write, kind: str) -> None:
+    right, wrong, expected = SIGNATURES[kind]
+    file = write(kind, (right, wrong))
+    with pytest.warns(PluginWarning) as warned:
+        assert registry().plugins == ()
+    (message,) = [str(warning.message) for warning in warned]
+    assert message.startswith(f"left out: {file}: class ")
+    assert f"method must be {expected}" in message
+    assert study({}).run().peaks["tyre"].temperature > 30
+    if kind in USES:
+        with pytest.raises(tf.InputError) as caught:
+            study(USES[kind])
+        assert str(file) in str(caught.value)
+        assert expected in str(caught.value)
+
+
+@pytest.mark.parametrize("kind", USES)
+@pytest.mark.parametrize(
+    ("broken", "words"),
+    [("import nothing_like_it\n", "ModuleNotFoundError"), ("def f(:\n", "line 1: SyntaxError"), ("1 / 0\n", "(line 1)"),
+     ("raise SystemExit\n", "SystemExit")],
+)  # fmt: skip
+def test_a_file_that_cannot_be_loaded_is_named_where_it_is_used(
+    write: Write, kind: str, broken: str, words: str
+) -> None:
+    file = write(kind)
+    file.write_text(broken + file.read_text(encoding="utf-8"), encoding="utf-8")
+    with pytest.warns(PluginWarning, match=r"cannot be loaded"):
+        loaded = study({})
+    with pytest.raises(tf.InputError) as caught:
+        loaded.replace(USES[kind])
+    assert str(caught.value).startswith(str(file))
+    assert "stands in this file, which cannot be loaded" in str(caught.value)
+    assert words in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+VALUES = {
+    "film nan": ("boundary-law", "self.at_rest + ", "np.nan + ", "film(0 m/s) must be a finite number of at least 0"),
+    "film text": ("boundary-law", "return self", "return 'much' #", "must be a finite number of at least 0 W/m2/K"),
+    "film negative": ("boundary-law", "return self", "return -self", "not -6"),
+    "film array": ("boundary-law", "return self", "return np.ones(3) #", "not an array of shape (3,)"),
+    "tan delta shape": ("tan-delta-law", "return self", "return np.ones(3) #", "must give shape (13,), not (3,)"),
+    "tan delta in percent": ("tan-delta-law", "self.value *", "100 * self.value *", "from 0 to 10"),
+    "tan delta nan": ("tan-delta-law", "self.value *", "np.log(-1.0 * self.value) *", "not nan"),
+    "mu negative": ("friction-law", "return self", "return -self", "mu(0 to 60 m/s, 1 to 5000 kPa, -20 degC)"),
+    "mu text": ("friction-law", "return self", "return self.grip + self", "AttributeError"),
+}
+
+
+@pytest.mark.filterwarnings("ignore:invalid value:RuntimeWarning")
+@pytest.mark.parametrize("fault", VALUES)
+def test_wrong_values_of_a_law_are_refused_when_its_card_is_read(write: Write, fault: str) -> None:
+    kind, old, new, words = VALUES[fault]
+    file = write(kind, (old, new), ("from typing", "import numpy as np\nfrom typing"))
+    assert study({}).name
+    with pytest.raises(tf.InputError) as caught:
+        study(USES[kind])
+    assert str(file) in str(caught.value)
+    assert words in str(caught.value)
+
+
+EFFECTS = {
+    "nan": ("return self.shine", "return float('nan')", "must be finite numbers of shape", "not nan"),
+    "shape": ("return self.shine", "return x", "flux: must give a number, or ", "array of shape (2, "),
+    "text": ("return self.shine", "return 'much'", "flux: must give a number, or ", "'much'"),
+    "error": ("return self.shine", "return self.shade", "flux: AttributeError", "(line "),
+}
+
+
+@pytest.mark.parametrize("fault", EFFECTS)
+def test_wrong_values_of_an_effect_end_before_the_first_step(write: Write, fault: str) -> None:
+    old, new, *words = EFFECTS[fault]
+    file = write("effect", (old, new))
+    reached: list[float] = []
+    with pytest.raises(tf.InputError) as caught:
+        study(USES["effect"]).run(reached.append)
+    assert reached == []
+    assert str(caught.value).startswith(f"{file}: class Lamp: flux('outside_air'") or "class Lamp" in str(caught.value)
+    for word in words:
+        assert word in str(caught.value)
+
+
+def test_an_error_in_mid_run_names_the_plugin(write: Write) -> None:
+    file = write("effect", ("return self.shine", "return 'much' + 1 if 20 < t < 25 else self.shine"))
+    with pytest.raises(tf.InputError, match=r"class Lamp, flux: TypeError: .*\(line \d+\)") as caught:
+        study(USES["effect"]).run()
+    assert str(caught.value).startswith(str(file))
+
+
+STRAINS = {
+    "negative": ("return (CROWN", "return -(CROWN", "energy_density('carcass'"),
+    "shape": ("return (CROWN", "return np.ones(3) * (CROWN", "class CrownToBead, energy_density: ValueError"),
+    "no zones": ("return tuple(Zone(", "return () and tuple(Zone(", "the strain cycle's zones must be a tuple"),
+    "unknown region": ("Zone(region, region, region)", "Zone(region, 'belt', region)", "name the region 'belt'"),
+    "no function": ("return lambda case: ", "return ", "NameError"),
+}
+
+
+@pytest.mark.parametrize("fault", STRAINS)
+def test_wrong_strain_cycles_are_refused(write: Write, fault: str) -> None:
+    old, new, words = STRAINS[fault]
+    file = write("strain-law", (old, new))
+    with pytest.raises(tf.InputError) as caught:
+        study(USES["strain-law"]).run()
+    assert str(file) in str(caught.value)
+    assert "class CrownToBead" in str(caught.value)
+    assert words in str(caught.value)
+
+
+COLLISIONS = {
+    "effect": ("sun", lambda: catalogue()["sun"]),
+    "strain-law": ("arcs", lambda: strain_laws()["arcs"].__class__),
+    "sweep-answer": ("tornado", lambda: sweep_questions()["tornado"]),
+    "boundary-law": ("nasa", lambda: laws("outside_air")["nasa"]),
+}
+
+
+@pytest.mark.parametrize("kind", COLLISIONS)
+def test_a_plugin_never_replaces_a_shipped_one(write: Write, kind: str) -> None:
+    name, shipped = COLLISIONS[kind]
+    file = write(kind, name=name)
+    with pytest.warns(PluginWarning, match=r"has the name of a shipped .*tyrefem\.\w+"):
+        assert shipped().__module__.startswith("tyrefem.")
+    assert shipped().__module__ != file.stem
+
+
+def test_a_study_that_names_a_taken_name_is_refused_with_both(write: Write) -> None:
+    file = write("effect", name="sun")
+    with pytest.warns(PluginWarning):
+        registry()
+    with pytest.raises(tf.InputError) as caught:
+        study({"effects": [{"name": "sun", "absorbed": "50 W/m**2"}]})
+    assert str(file) in str(caught.value)
+    assert "tyrefem.effects.sun" in str(caught.value)
+
+
+def test_two_plugins_of_a_name_are_refused_with_both(write: Write, folder: Path) -> None:
+    first = write("effect")
+    second = folder / "second.py"
+    second.write_text(first.read_text(encoding="utf-8") + "\n# another\n", encoding="utf-8")
+    with pytest.warns(PluginWarning, match="has the name of class Lamp of"):
+        registry()
+    with pytest.raises(tf.InputError) as caught:
+        study(USES["effect"])
+    assert str(first) in str(caught.value)
+    assert str(second) in str(caught.value)
+
+
+def test_a_folder_that_is_missing_is_a_warning(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("TYREFEM_PLUGINS", "/nowhere/at/all")
+    with pytest.warns(PluginWarning, match="TYREFEM_PLUGINS names '/nowhere/at/all', which is not a folder"):
+        assert "sun" in catalogue()
+    with pytest.raises(tf.InputError, match="no such file or folder"):
+        use("/nowhere/at/all")
+
+
+def test_files_with_an_underscore_are_left_out(folder: Path) -> None:
+    (folder / "_helper.py").write_text("1 / 0\n", encoding="utf-8")
+    assert registry().modules == ()
+
+
+def test_an_edited_file_is_read_again(write: Write, folder: Path) -> None:
+    write("effect")
+    assert "A lamp" in catalogue()["lamp"].sentence
+    write("effect", ("A lamp shines", "A sun lamp shines"))
+    use(folder)
+    assert "A sun lamp" in catalogue()["lamp"].sentence

@@ -1,0 +1,96 @@
+"""`tyrefem new`, `check` and `list` of plugins, and a run with one that fails."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from tyrefem.cli import main
+from tyrefem.contracts import TEMPLATES
+
+Write = Callable[..., Path]
+RUN = ("run", "nasa-22x5.5-8pr", "--no-pictures", "--no-vtk", "--set", "mesh.size=12 mm", "--set",
+       "mesh.element=P1", "--set", "drive.duration=60 s")  # fmt: skip
+
+
+@pytest.mark.parametrize("kind", TEMPLATES)
+def test_a_new_plugin_passes_its_check(folder: Path, kind: str, capfd: pytest.CaptureFixture[str]) -> None:
+    assert main(["new", kind, "my-own"]) == 0
+    assert "plugins/my_own.py written" in capfd.readouterr().out
+    assert main(["check", "plugins/my_own.py"]) == 0
+    out, err = capfd.readouterr()
+    assert out.splitlines()[0].startswith(f"{kind.replace('-', ' ')} '")
+    assert "FAIL" not in out
+    assert "all kept" in out
+    assert err == ""
+    assert main(["list", "sweep-answers" if kind == "sweep-answer" else f"{kind}s"]) == 0
+    assert f"[{folder / 'my_own.py'}]" in capfd.readouterr().out
+    assert main(["new", kind, "my-own"]) == 2
+    assert "the file exists already" in capfd.readouterr().err
+
+
+@pytest.mark.parametrize("kind", TEMPLATES)
+def test_a_kind_without_a_name_has_that_of_its_example(folder: Path, kind: str) -> None:
+    assert main(["new", kind]) == 0
+    assert (folder / f"{TEMPLATES[kind].replace('-', '_')}.py").is_file()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["new", "effect", "My Lamp"], "is not allowed as a plugin's name"),
+        (["new", "effect", "lamp", "--from", "sun"], "are for cards"),
+        (["new", "study"], "is missing: the new card's name"),
+        (["new", "effct", "lamp"], "did you mean 'effect'?"),
+        (["check", "nasa-tread", "--study", "nasa-22x5.5-8pr"], "goes with a Python file of plugins"),
+        (["list", "strain-law"], "did you mean 'strain-laws'?"),
+    ],
+)
+def test_a_wrong_command_is_refused(
+    folder: Path, arguments: list[str], words: str, capfd: pytest.CaptureFixture[str]
+) -> None:
+    assert main(arguments) == 2
+    assert words in capfd.readouterr().err
+
+
+def test_a_failing_check_has_exit_code_2(write: Write, capfd: pytest.CaptureFixture[str]) -> None:
+    file = write("boundary-law", ("return self", "return -self"))
+    assert main(["check", str(file)]) == 2
+    out, err = capfd.readouterr()
+    assert "FAIL  film gives a finite number of at least 0 W/m2/K: film(0 m/s) must be" in out
+    assert err == f"tyrefem: {file}: 2 of 4 contracts fail\n"
+    assert main(["check", str(file), "--json"]) == 2
+    contracts = json.loads(capfd.readouterr().out)
+    assert (contracts["failed"], contracts["contracts"]) == (2, 4)
+
+
+def test_a_run_without_the_failing_plugin_works_with_one_line(
+    write: Write, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    file = write("effect", ("surface, x, t)", "x)"))
+    assert main([*RUN]) == 0
+    (line,) = [line for line in capfd.readouterr().err.splitlines() if "warning" in line]
+    assert line.startswith(f"tyrefem: warning: left out: {file}: class Lamp: ")
+
+
+def test_a_run_with_it_ends_in_one_error_before_it_starts(
+    write: Write, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    file = write("effect", ("return self.shine", "return float('nan')"))
+    assert main([*RUN, "--set", 'effects=[{name="lamp", shine="5 W/m**2"}]']) == 2
+    out, err = capfd.readouterr()
+    assert out == ""
+    (line,) = err.splitlines()
+    assert line.startswith(f"tyrefem: {file}: class Lamp: flux('outside_air', ")
+    assert not (tmp_path / "results").exists()
+
+
+def test_every_plugin_is_listed(write: Write, capfd: pytest.CaptureFixture[str]) -> None:
+    files = [write(kind) for kind in TEMPLATES]
+    assert main(["list", "plugins"]) == 0
+    lines = capfd.readouterr().out.splitlines()
+    assert len(lines) == len(files)
+    assert {line.split("[")[1].rstrip("]") for line in lines} == set(map(str, files))

@@ -1,0 +1,180 @@
+"""Plugins of installed packages, in worker processes, on other machines, in reduced models and kept results."""
+
+from __future__ import annotations
+
+import os
+import pickle
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import tyrefem as tf
+from tyrefem.plugins import registry, sent, use
+from tyrefem.variants.answer_store import effects_source, study_digest
+from tyrefem.variants.plan import plan_of
+from tyrefem.variants.schedulers import Local
+from tyrefem.variants.task import Bundle, Task, VersionError, bundle, perform, unpacked
+
+Write = Callable[..., Path]
+COARSE = {"mesh.size": "12 mm", "mesh.element": "P1", "drive.duration": "60 s", "output.fields": 2}
+FILM = {"law": "power-film", "at_10_m_s": "30 W/m**2/K"}
+LOSS = {"law": "arrhenius", "value": 0.2, "activation": "800 K", "source": "estimate: a test"}
+OWN = {
+    "boundaries.outside_air": FILM,
+    "materials.tread": {"base": "nasa-tread", "loss_tangent": LOSS},
+    "mechanics.strain": "crown-to-bead",
+    "effects": [{"name": "lamp", "shine": "50 W/m**2"}],
+}
+KINDS = ("effect", "boundary-law", "tan-delta-law", "strain-law")
+
+
+@pytest.fixture
+def study(write: Write) -> tf.Study:
+    """A coarse study with an own effect, boundary law, tan delta law and strain law."""
+    for kind in KINDS:
+        write(kind)
+    return tf.study("nasa-22x5.5-8pr", {**COARSE, **OWN})
+
+
+def package(place: Path, text: str, version: str = "1.2", entry: str = "hot_laws") -> Path:
+    """An installed package with an entry point."""
+    place.mkdir(exist_ok=True)
+    (place / "hot_laws.py").write_text(text, encoding="utf-8")
+    info = place / f"hot_laws-{version}.dist-info"
+    info.mkdir()
+    (info / "METADATA").write_text(f"Metadata-Version: 2.1\nName: hot-laws\nVersion: {version}\n", encoding="utf-8")
+    (info / "entry_points.txt").write_text(f"[tyrefem]\nlaws = {entry}\n", encoding="utf-8")
+    return place
+
+
+def listed(packages: Path, *arguments: str, **variables: str) -> subprocess.CompletedProcess[str]:
+    """A command with packages beside the installed ones."""
+    paths = os.pathsep.join([str(packages), os.environ.get("PYTHONPATH", "")])
+    environment = os.environ | {"PYTHONPATH": paths, "TYREFEM_PLUGINS": ""} | variables
+    command = [sys.executable, "-m", "tyrefem", *arguments]
+    return subprocess.run(command, env=environment, capture_output=True, text=True, timeout=120, check=False)
+
+
+def test_a_package_s_laws_are_known_and_can_be_switched_off(write: Write, tmp_path: Path) -> None:
+    text = write("boundary-law").read_text(encoding="utf-8") + write("effect").read_text(encoding="utf-8")
+    packages = package(tmp_path / "site", text)
+    done = listed(packages, "list", "plugins")
+    assert done.stderr == ""
+    assert done.stdout.count("[package hot-laws 1.2 (hot_laws)]") == 2
+    for off in ("laws", "all", "other, laws"):
+        assert listed(packages, "list", "plugins", TYREFEM_PLUGINS_OFF=off).stdout == ""
+    assert listed(packages, "list", "plugins", TYREFEM_PLUGINS_OFF="other").stdout == done.stdout
+
+
+def test_an_entry_point_may_name_a_single_class(write: Write, tmp_path: Path) -> None:
+    text = write("boundary-law").read_text(encoding="utf-8") + write("effect").read_text(encoding="utf-8")
+    done = listed(package(tmp_path / "site", text, entry="hot_laws:PowerFilm"), "list", "plugins")
+    assert [line.split()[0] for line in done.stdout.splitlines()] == ["boundary"]
+
+
+def test_a_failing_package_names_itself(write: Write, tmp_path: Path) -> None:
+    packages = package(tmp_path / "site", "import nothing_like_it\n")
+    done = listed(packages, "list", "strain-laws")
+    assert done.returncode == 0
+    assert "arcs" in done.stdout
+    assert done.stderr.startswith("tyrefem: warning: left out: package hot-laws 1.2 (hot_laws): cannot be loaded: Mod")
+    assert done.stderr.count("\n") == 1
+
+
+def test_worker_processes_have_the_same_plugins(study: tf.Study) -> None:
+    speeds = {"drive.speed": ["10 mph", "20 mph"]}
+    here = study.sweep(speeds, reduced="never").table["hottest_degC"].to_numpy()
+    there = study.sweep(speeds, reduced="never", scheduler=Local(2)).table["hottest_degC"].to_numpy()
+    assert np.array_equal(here, there)
+    assert here[0] < here[1]
+
+
+def test_pickled_laws_are_found_in_another_process(study: tf.Study) -> None:
+    law = pickle.dumps(study.materials["tread"].loss_tangent)
+    code = "import pickle, sys; print(float(pickle.load(sys.stdin.buffer)(60.0)))"
+    came = subprocess.run([sys.executable, "-c", code], input=law, capture_output=True, timeout=120, check=True)
+    assert float(came.stdout) == float(study.materials["tread"].loss_tangent(60.0))
+
+
+def test_a_study_takes_its_plugins_to_another_machine(study: tf.Study, tmp_path: Path) -> None:
+    """A process without the folder, as a Dask worker on another machine, runs the packed study."""
+    task = Task(0, bundle(study), {})
+    code = (
+        "import pickle, sys; from tyrefem.variants.task import perform; "
+        "print(perform(pickle.load(sys.stdin.buffer)).answers['hottest_degC'])"
+    )
+    environment = {name: text for name, text in os.environ.items() if not name.startswith("TYREFEM")}
+    came = subprocess.run(
+        [sys.executable, "-c", code], input=pickle.dumps(task), env=environment, capture_output=True, timeout=120,
+        check=True, cwd="/",
+    )  # fmt: skip
+    assert float(came.stdout) == perform(task).answers["hottest_degC"]
+
+
+def test_the_sender_s_files_go_before_the_worker_s(study: tf.Study, write: Write, folder: Path) -> None:
+    packed = bundle(study)
+    expected = perform(Task(0, packed, {})).answers["hottest_degC"]
+    write("strain-law", ("100e3, 5e3", "10e3, 5e3"))
+    use(folder)
+    assert perform(Task(0, bundle(study), {})).answers["hottest_degC"] < expected - 1
+    assert perform(Task(0, packed, {})).answers["hottest_degC"] == expected
+
+
+def test_a_missing_package_is_said(study: tf.Study) -> None:
+    packed = bundle(study)
+    lacking = Bundle(packed.name, packed.data, packed.files, packed.version, type(packed.plugins)(
+        packed.plugins.files, {"hot_laws": ("hot-laws", "1.2", "0")}))  # fmt: skip
+    with pytest.raises(VersionError, match=r"the plugin package 'hot-laws' 1\.2 is not installed on this worker"):
+        unpacked(lacking)
+
+
+def keys_of(study: tf.Study) -> list[str]:
+    """Keys under which results of a study are kept."""
+    plan = plan_of(study, {"drive.speed": ["9 mph"]})
+    return [bundle(study).digest, effects_source(), study_digest(study), plan.digest]
+
+
+def test_an_edited_plugin_makes_other_keys(study: tf.Study, write: Write, folder: Path) -> None:
+    before = keys_of(study)
+    write("tan-delta-law", ("self.value *", "0.9 * self.value *"))
+    use(folder)
+    after = keys_of(tf.study("nasa-22x5.5-8pr", {**COARSE, **OWN}))
+    assert all(old != new for old, new in zip(before, after, strict=True))
+
+
+def test_without_plugins_keys_are_as_before(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("TYREFEM_PLUGINS", "")
+    monkeypatch.setenv("TYREFEM_EFFECTS", "")
+    assert sent().digest == ""
+    assert registry().plugins == ()
+
+
+def test_a_reduced_model_with_own_laws_is_certified(study: tf.Study) -> None:
+    """The certified reduced model answers as full runs do, to the certificate's error."""
+    vary = {"drive.speed": ("10 mph", "20 mph", 4), "drive.ambient": ("10 degC", "30 degC", 4)}
+    study = study.replace({"effects": []})  # a flux has no reduced model
+    reduced = study.sweep(vary, reduced="always")
+    assert reduced.swept is not None
+    assert reduced.swept.certificate is not None
+    assert reduced.swept.reduced == 16
+    full = study.sweep(vary, reduced="never")
+    error = np.abs(reduced.table["hottest_degC"] - full.table["hottest_degC"]).max()
+    assert error <= 2 * reduced.swept.certificate.worst + 1e-9
+
+
+def test_a_law_of_frequency_has_full_runs_where_it_cannot_be_reduced(write: Write) -> None:
+    write("tan-delta-law", ("return self.value", "return (frequency / 10) ** 0.1 * self.value"),
+          ("    at: Temp", "    of_frequency: ClassVar[bool] = True\n    at: Temp"))  # fmt: skip
+    changes = {"materials.tread": {"base": "nasa-tread", "loss_tangent": LOSS}}
+    study = tf.study("nasa-22x5.5-8pr", {**COARSE, **changes})
+    faster = study.replace({"drive.speed": "40 mph"})
+    # At other revolutions tan delta is another: more than in proportion.
+    heats = [each.run().heat_budget.total("generated") for each in (study, faster)]
+    assert heats[1] > 2 * heats[0]
+    swept = study.sweep({"drive.speed": ("10 mph", "20 mph", 12)}).swept
+    assert swept is not None
+    assert swept.failed == {}

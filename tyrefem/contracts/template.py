@@ -1,0 +1,49 @@
+"""Templates of plugins: short files that work, to be edited."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from tyrefem.errors import InputError
+
+#: Kinds of templates, as `tyrefem new` takes them: kind -> the name of its example.
+TEMPLATES = {
+    "effect": "lamp",
+    "boundary-law": "power-film",
+    "tan-delta-law": "arrhenius",
+    "strain-law": "crown-to-bead",
+    "friction-law": "falling",
+    "sweep-answer": "highest",
+}
+_ALLOWED = re.compile(r"[a-z][a-z0-9]*(-[a-z0-9]+)*")
+
+
+def template(kind: str, name: str) -> str:
+    """The text of a plugin's file of a kind, with a name.
+
+    Raises
+    ------
+    InputError : a name that is not of small letters, digits and single hyphens.
+
+    >>> "class HotWind(OutsideAirLaw):" in template("boundary-law", "hot-wind")
+    True
+    """
+    if not _ALLOWED.fullmatch(name):
+        raise InputError(f"'{name}' is not allowed as a plugin's name; allowed: small letters, digits, -, as hot-wind")
+    text = (Path(__file__).parent / "templates" / f"{kind}.txt").read_text(encoding="utf-8")
+    return text.replace("CLASS", class_name(name)).replace("NAME", name)
+
+
+def class_name(name: str) -> str:
+    """The class of a plugin's name.
+
+    >>> class_name("hot-wind")
+    'HotWind'
+    """
+    return "".join(part.capitalize() for part in name.split("-"))
+
+
+def file_name(name: str) -> str:
+    """The file of a plugin's name: ``hot_wind.py``."""
+    return f"{name.replace('-', '_')}.py"

@@ -1,0 +1,69 @@
+"""The plugins that a study uses: own effects and laws in its file and cards."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any
+
+from tyrefem.cards import Card
+from tyrefem.plugins import Plugin, registry
+
+if TYPE_CHECKING:
+    from tyrefem.inputs.study import StudyData
+
+
+def plugins_of(study: StudyData) -> tuple[Plugin, ...]:
+    """The user's effects and laws that a study uses, each once, by kind and name."""
+    loaded = registry()
+    if not loaded.plugins:
+        return ()
+    used = [loaded.of_class(type(card)) for card in _cards((study.card, dict(study.materials)))]
+    strain = study.card.mechanics.strain
+    used += [plugin for plugin in loaded.plugins if plugin.kind.name == "strain law" and plugin.name == strain]
+    present = {plugin for plugin in used if plugin is not None}
+    return tuple(sorted(present, key=lambda plugin: (plugin.kind.name, plugin.name)))
+
+
+def _cards(value: Any) -> Iterator[Card]:
+    if isinstance(value, Card):
+        yield value
+        for name in type(value).model_fields:
+            yield from _cards(getattr(value, name))
+    elif isinstance(value, Mapping):
+        for entry in value.values():
+            yield from _cards(entry)
+    elif isinstance(value, tuple | list):
+        for entry in value:
+            yield from _cards(entry)
+
+
+def named_plugins(value: Any) -> set[Plugin]:
+    """The plugins whose names are among the texts of plain data, such as the changes of variants."""
+    loaded = registry()
+    if not loaded.plugins:
+        return set()
+    texts = set(_texts(value))
+    return {plugin for plugin in loaded.plugins if plugin.name.split(".")[-1] in texts}
+
+
+def _texts(value: Any) -> Iterator[str]:
+    if isinstance(value, str):
+        yield value
+    elif isinstance(value, Mapping):
+        for key, entry in value.items():
+            yield from _texts(key)
+            yield from _texts(entry)
+    elif isinstance(value, tuple | list):
+        for entry in value:
+            yield from _texts(entry)
+
+
+def plugin_summary(study: StudyData, *also: Any) -> dict[str, Any]:
+    """``plugins`` of a ``summary.json``: kind, name, class, file or package, version and digest of each plugin used.
+
+    ``also``: plain data that may name more of them.
+    """
+    used = {*plugins_of(study), *named_plugins(list(also))}
+    return {
+        "plugins": [plugin.to_dict() for plugin in sorted(used, key=lambda plugin: (plugin.kind.name, plugin.name))]
+    }

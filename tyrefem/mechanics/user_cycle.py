@@ -1,0 +1,140 @@
+"""The strain cycle of a user's law: tried at some points, and its errors name its file and class."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.mechanics.strain_cycle import Zone
+from tyrefem.plugins import Origin, Range, Trial, registry, trial
+from tyrefem.plugins.guard import guarded, plugin_error
+from tyrefem.plugins.kind import is_ours
+
+if TYPE_CHECKING:
+    from tyrefem.geometry import Section
+    from tyrefem.inputs.loading import LoadCase
+    from tyrefem.inputs.study import StudyData
+
+Array = NDArray[np.float64]
+#: Stations across every piece of a region where energies are tried.
+STATIONS = 7
+#: Strain energies are of 1e2 to 1e6 J/m3; beyond this the unit is another.
+ENERGIES = Range("J/m3", 0.0, 1e9)
+
+
+def with_tried_cycles(cls: type[Any], origin: Origin) -> None:
+    """Let the provider of a user's law try its cycles: zones, and energies of the first one."""
+    provider = cls.provider
+    if hasattr(provider, "tries_cycles"):
+        return
+
+    @functools.wraps(provider)
+    def tried(self: Any, study: StudyData) -> Callable[..., Any]:
+        name = type(self).__name__
+        cycle_of = guarded_call(provider(self, study), f"class {name}, what provider gives", origin)
+        seen: list[bool] = []
+
+        def cycle(case: LoadCase, *near: Any) -> Any:
+            computed = cycle_of(case, *near)
+            if is_ours(type(computed)):
+                return computed
+            user_cycle = UserCycle(computed, name, origin)
+            if not seen:
+                seen.append(True)
+                fault = next((trial.fault for trial in user_cycle.trials(study.section) if trial.fault), None)
+                if fault:
+                    raise plugin_error(origin, f"class {name}", fault)
+            return user_cycle
+
+        return cycle
+
+    tried.tries_cycles = True  # type: ignore[attr-defined]
+    cls.provider = tried
+
+
+def guarded_call(cycle_of: Any, place: str, origin: Origin) -> Callable[..., Any]:
+    """A function from load case to cycle whose errors name the plugin; refused where it is no function."""
+    if not callable(cycle_of):
+        raise plugin_error(origin, place, f"must be a function from load case to strain cycle, not {cycle_of!r:.60}")
+    if not hasattr(cycle_of, "__code__"):
+        return guarded(lambda *cases: cycle_of(*cases), place, origin)
+    return guarded(cycle_of, place, origin)
+
+
+@dataclass(frozen=True, eq=False)
+class UserCycle:
+    """A user's strain cycle. ``name``: of its law's class."""
+
+    cycle: Any
+    name: str
+    origin: Origin
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("__") or name == "cycle":
+            raise AttributeError(name)
+        return getattr(self.cycle, name)
+
+    @property
+    def zones(self) -> tuple[Zone, ...]:
+        """The zones."""
+        return tuple(self.cycle.zones)
+
+    def energy_density(self, zone: str, points: Array) -> Array:
+        """U, J/m3, at points (2, n) of a zone."""
+        place = f"class {self.name}, energy_density"
+        values = guarded(lambda: self.cycle.energy_density(zone, points), place, self.origin)()
+        try:
+            return np.broadcast_to(np.asarray(values, dtype=float), points.shape[1:])
+        except (TypeError, ValueError):
+            must = f"must give {points.shape[1]} numbers for {points.shape[1]} points, not {np.shape(values)}"
+            raise plugin_error(self.origin, place, must) from None
+
+    def trials(self, section: Section) -> Iterator[Trial]:
+        """Zones of the section's regions, and energies at points of each."""
+        fault = _zones_fault(getattr(self.cycle, "zones", None), section)
+        yield Trial("zones are parts of the section's regions", fault and f"the strain cycle's {fault}")
+        if fault:
+            return
+        for zone in self.zones:
+            points = points_of(section, zone)
+            if points.shape[1]:
+                words = f"energy_density('{zone.name}', {points.shape[1]} points)"
+                energies = functools.partial(self.energy_density, zone.name, points)
+                yield trial(words, energies, ENERGIES, points.shape[1:])
+
+
+def of_present_law(cycle: Any, law: type[Any]) -> bool:
+    """False for a cycle of a user's law whose file has been edited since."""
+    plugin = registry().of_class(law)
+    if plugin is None or not isinstance(cycle, UserCycle):
+        return True
+    return cycle.origin.sha256 == plugin.origin.sha256
+
+
+def _zones_fault(zones: Any, section: Section) -> str | None:
+    needs = "zones must be a tuple of tyrefem.mechanics.strain_cycle.Zone(name, region, title)"
+    if not isinstance(zones, tuple | list) or not zones or not all(isinstance(zone, Zone) for zone in zones):
+        return f"{needs}, not {zones!r:.60}"
+    unknown = [zone.region for zone in zones if zone.region not in section.regions]
+    if unknown:
+        return f"zones name the region '{unknown[0]}', which section '{section.name}' does not have"
+    return None
+
+
+def points_of(section: Section, zone: Zone) -> Array:
+    """Points (2, n) of a zone, some in each piece of its region."""
+    points = []
+    for piece in section.pieces:
+        start, end = max(piece.start, zone.start), min(piece.end, zone.end)
+        if piece.region != zone.region or end <= start:
+            continue
+        s = np.linspace(start, end, STATIONS + 2)[1:-1]
+        faces = section.interfaces(s)
+        depth = 0.5 * (faces[piece.layer] + faces[piece.layer + 1]) - faces[0]
+        points.append(section.place(s, depth))
+    return np.concatenate(points).T if points else np.zeros((2, 0))

@@ -1,0 +1,69 @@
+"""Errors inside a plugin's methods name the plugin: file, class, method and line, instead of a traceback."""
+
+from __future__ import annotations
+
+import functools
+import inspect
+import traceback
+from collections.abc import Callable
+from typing import Any
+
+from tyrefem.errors import InputError
+from tyrefem.plugins.origin import Origin
+from tyrefem.plugins.signature import contract_methods
+
+_MARK = "_names_its_plugin"
+
+
+def guard(cls: type, origin: Origin) -> None:
+    """Let the methods of a user's class that this package calls name themselves where they fail."""
+    for part, name, attribute, _ in list(contract_methods(cls)):
+        place = f"class {part.__name__}, {name}"
+        if isinstance(attribute, classmethod) and not hasattr(attribute.__func__, _MARK):
+            setattr(part, name, classmethod(guarded(attribute.__func__, place, origin)))
+        elif isinstance(attribute, staticmethod) and not hasattr(attribute.__func__, _MARK):
+            setattr(part, name, staticmethod(guarded(attribute.__func__, place, origin)))
+        elif isinstance(attribute, property) and attribute.fget and not hasattr(attribute.fget, _MARK):
+            setattr(part, name, property(guarded(attribute.fget, place, origin), doc=attribute.__doc__))
+        elif inspect.isfunction(attribute) and not hasattr(attribute, _MARK):
+            setattr(part, name, guarded(attribute, place, origin))
+
+
+def guarded(function: Callable[..., Any], place: str, origin: Origin) -> Callable[..., Any]:
+    """A function whose errors become an `InputError` with the plugin's file, the place, and the line.
+
+    >>> def film(speed): return 1 / speed
+    >>> guarded(film, "class Gust, film", Origin(entry="x", package="winds"))(0)
+    Traceback (most recent call last):
+    ...
+    tyrefem.errors.InputError: package winds (x): class Gust, film: ZeroDivisionError: division by zero (line ...)
+    """
+
+    @functools.wraps(function)
+    def call(*args: Any, **named: Any) -> Any:
+        try:
+            return function(*args, **named)
+        except (InputError, MemoryError):
+            raise
+        except Exception as error:
+            raise plugin_error(origin, place, failure_words(error, function.__code__.co_filename)) from error
+
+    setattr(call, _MARK, True)
+    return call
+
+
+def failure_words(error: BaseException, file: str) -> str:
+    """An exception in a line: its class and message, and the last line of ``file`` that it passed."""
+    if isinstance(error, SyntaxError):
+        return f"line {error.lineno}: {type(error).__name__}: {error.msg}"
+    lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == file]
+    text = " ".join(str(error).split())
+    return f"{type(error).__name__}: {text}" + (f" (line {lines[-1]})" if lines else "")
+
+
+def plugin_error(origin: Origin, place: str, words: str) -> InputError:
+    """An error of a plugin: its file or package, the class, and what is wrong."""
+    text = ": ".join(filter(None, (place, words)))
+    if origin.file is not None:
+        return InputError(text, file=origin.file)
+    return InputError(f"{origin.words}: {text}")
