@@ -30,9 +30,9 @@ from tyrefem.mechanics.footprint.compliance import TreadCompliance
 from tyrefem.mechanics.footprint.contact import Pressing
 from tyrefem.mechanics.footprint.example_tyre import PlainTyre
 from tyrefem.mechanics.footprint.road import Road
-from tyrefem.mechanics.rolling.example_bodies import bristles, half_plane, string
+from tyrefem.mechanics.rolling.example_bodies import CYLINDER_RADIUS, bristles, cylinder, string
 from tyrefem.mechanics.rolling.free_rolling import LossyTyre, rolling_resistance
-from tyrefem.mechanics.rolling.friction import Control, RollingContact
+from tyrefem.mechanics.rolling.friction import RollingContact
 from tyrefem.mechanics.rolling.lossy_harmonics import LossyHarmonics
 from tyrefem.mechanics.rolling.roll import settled, wheel_on_road
 from tyrefem.mechanics.rolling.rolling_motion import RollingMotion
@@ -72,19 +72,10 @@ def rigid(count: int, slip: float, component: int) -> Any:
 
 def carter() -> Iterator[tuple[str, float, float]]:
     """Case, computed, exact: force over mu times load, for the creeps that Carter gives."""
-    count, radius = 401, 50.0
-    step = 2.4 / count
-    x = (np.arange(count) - (count - 1) / 2) * step
-    load, arms = np.pi / (4 * radius), np.zeros((count, 3))
-    arms[:, 0] = 1.0
-    sought = Control(-np.ones(count), np.zeros((count, 2)), arms, load)
-    body = half_plane(count, step, 1.0)
     for share in (0.25, 0.5, 0.75, 0.9, 0.99, 1.0):
-        creep = FRICTION / radius * (1 - math.sqrt(1 - share)) * (1.2 if share == 1.0 else 1.0)
-        contact = RollingContact(
-            body, x**2 / (2 * radius), rigid(count, creep * step, 0), np.full(count, FRICTION), [sought]
-        )
-        forces = contact.solve(values=[1 / radius])
+        creep = FRICTION / CYLINDER_RADIUS * (1 - math.sqrt(1 - share)) * (1.2 if share == 1.0 else 1.0)
+        _, load, contact = cylinder(401, creep, FRICTION)
+        forces = contact.solve(values=[1 / CYLINDER_RADIUS])
         yield f"Carter, Q/(mu P) = {share:g}", -float(forces.forces[:, 1].sum()) / (FRICTION * load), share
         if share < 1:
             sticks, touches = (forces.states == 1).sum(), (forces.states > 0).sum()

@@ -24,9 +24,9 @@ import skfem
 from tyrefem.mechanics.footprint.contact import Pressing
 from tyrefem.mechanics.footprint.example_tyre import PlainTyre
 from tyrefem.mechanics.footprint.road import Road
-from tyrefem.mechanics.rolling.example_bodies import beam, half_plane
+from tyrefem.mechanics.rolling.example_bodies import CYLINDER_RADIUS, beam, cylinder
 from tyrefem.mechanics.rolling.example_rings import ElasticRing
-from tyrefem.mechanics.rolling.friction import Control, RollingContact
+from tyrefem.mechanics.rolling.friction import RollingContact
 from tyrefem.mechanics.rolling.rolling_motion import RollingMotion
 from tyrefem.mechanics.rolling.steady_rolling import RollingLoads, SteadyRolling
 from tyrefem.mechanics.solid.body import Body
@@ -93,16 +93,8 @@ def growth() -> Iterator[Row]:
 
 def contacts() -> Iterator[Row]:
     """Hertz, and a beam on an elastic bed."""
-    count, radius = 401, 50.0
-    step = 2.4 / count
-    x = (np.arange(count) - (count - 1) / 2) * step
-    load, arms = np.pi / (4 * radius), np.zeros((count, 3))
-    arms[:, 0] = 1.0
-    sought = Control(-np.ones(count), np.zeros((count, 2)), arms, load)
-    contact = RollingContact(
-        half_plane(count, step, 1.0), x**2 / (2 * radius), np.zeros((count, 2)), np.full(count, 0.3), [sought]
-    )
-    pressure = contact.solve(values=[1 / radius]).forces[:, 0] / step
+    x, load, contact = cylinder(401, 0.0, 0.3)
+    pressure = contact.solve(values=[1 / CYLINDER_RADIUS]).forces[:, 0] / (x[1] - x[0])
     for place in (0.0, 0.5, 0.8):
         k = int(np.abs(x - place).argmin())
         yield f"Hertz, pressure at {place:g} a, Pa", "2 P/(pi a) sqrt(1 - x^2/a^2)", float(pressure[k]), \

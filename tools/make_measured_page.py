@@ -162,6 +162,21 @@ def rolling_resistance() -> list[str]:
     ]
 
 
+#: Directions of the push on the standing tyre.
+WAYS = ("forward", "sideways")
+
+
+def standing() -> list[str]:
+    """Stiffness of the standing tyre of `benchmarks/rolling.py --standing`."""
+    with (TABLES / "rolling-standing.csv").open(encoding="utf-8", newline="") as lines:
+        stored = list(csv.DictReader(lines))
+    rows = []
+    for row in stored:
+        ways = [(float(row[f"{way} [N/mm]"]), float(row[f"{way} [% of measured, less 100]"])) for way in WAYS]
+        rows.append((row["contact"], row["moduli"], *(f"{value:.0f} ({error:+.0f} %)" for value, error in ways)))
+    return _lines("contact | moduli | forward, N/mm (E) | sideways, N/mm (E)", rows)
+
+
 def page_tables() -> str:
     """The tables of the page."""
     rows = comparison()
@@ -173,6 +188,8 @@ def page_tables() -> str:
         ),
         f"Every ink print of the {ECF}: computed / measured.": every_print(rows),
         "Bias aircraft tyres by the load law of NASA TR R-64.": aircraft(),
+        f"The standing {PASSENGER} at 220 kPa and 4000 N, pushed along the road. A small push has the moduli at 0.1 % "
+        "of shear ([why](method/rolling-friction.md#standing-tyre)).": standing(),
         "Exponents of the rolling resistance coefficient.": rolling_resistance(),
     }
     return "\n".join("\n".join([*([title, ""] if title else []), *lines]) for title, lines in sections.items()).strip()

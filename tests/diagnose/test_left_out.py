@@ -10,7 +10,7 @@ import pytest
 from hidden import measure, study
 
 import tyrefem as tf
-from tyrefem.diagnose.candidates import Candidate, catalogue_candidates, possible
+from tyrefem.diagnose.candidates import Candidate, beside_rolling, catalogue_candidates, possible
 from tyrefem.diagnose.forward_model import ForwardModel
 from tyrefem.diagnose.settings import DiagnosisSettings
 from tyrefem.diagnose.unknowns import of_effect
@@ -61,6 +61,17 @@ def test_a_candidate_that_the_study_cannot_have_is_left_out_with_a_note(tmp_path
     assert len(notes) == 1
     assert notes[0].startswith("swapped-channels (crown-outer, shoulder-inner) was left out")
     assert notes[0].endswith("'crown-outer' is swapped twice")
+
+
+@pytest.mark.fast
+def test_slip_beside_a_tyre_that_rolls_with_friction_is_noted() -> None:
+    free = tf.study("passenger-205-55r16", {"mechanics.motion": "linear", "mesh.section": "full"})
+    rolls = free.replace({"boundaries.sliding": "rolling"})
+    candidates = catalogue_candidates(rolls)
+    (note,) = beside_rolling(rolls, candidates)
+    assert "so yaw, tread-slip, camber would stand for more slip angle, slip or camber than it states" in note
+    assert beside_rolling(free, candidates) == ()
+    assert beside_rolling(rolls, [each for each in candidates if each.name == "hot-road"]) == ()
 
 
 def test_a_candidate_whose_tyre_cannot_be_simulated_does_not_end_the_diagnosis(

@@ -7,7 +7,7 @@ import pytest
 
 from tyrefem.errors import InputError
 from tyrefem.mechanics.rolling.contact_body import ContactBody
-from tyrefem.mechanics.rolling.example_bodies import beam, bristles, half_plane, string
+from tyrefem.mechanics.rolling.example_bodies import CYLINDER_RADIUS, beam, bristles, cylinder, string
 from tyrefem.mechanics.rolling.friction import OPEN, SLIP, STICK, Control, RollingContact
 
 pytestmark = pytest.mark.fast
@@ -26,27 +26,17 @@ def rigid(count: int, step: float, creep: float, component: int) -> np.ndarray:
     return slips
 
 
-def cylinder(creep: float, scale: float = 1.0, friction: float = MU, component: int = 0) -> tuple:
+def rolled_cylinder(creep: float, scale: float = 1.0, friction: float = MU, component: int = 0) -> tuple:
     """An elastic cylinder of radius 50 on a rigid plane under the load that makes the contact 2 A long."""
-    count, radius, modulus = 161, 50.0, 1.0
-    step = 2.4 * A / count
-    x = positions(count, step)
-    load = np.pi * modulus * A**2 / (4 * radius)
-    arms = np.zeros((count, 3))
-    arms[:, 0] = 1.0
-    sought = Control(-np.ones(count), np.zeros((count, 2)), arms, load)
-    problem = RollingContact(
-        half_plane(count, step, modulus), x**2 / (2 * radius), rigid(count, step, creep * A / radius, component),
-        np.full(count, friction), [sought], scale,
-    )  # fmt: skip
-    return problem.solve(values=[A**2 / radius]), load, x, step
+    x, load, problem = cylinder(161, creep * A / CYLINDER_RADIUS, friction, component=component, scale=scale)
+    return problem.solve(values=[A**2 / CYLINDER_RADIUS]), load, x, x[1] - x[0]
 
 
 @pytest.mark.parametrize("share", [0.25, 0.5, 0.75, 0.9, 0.99])
 @pytest.mark.parametrize("component", [0, 1])
 def test_carter(share: float, component: int) -> None:
     """Creep = mu a/R (1 - sqrt(1 - Q/(mu P))); the zone that sticks begins at the front: sqrt(1 - Q/(mu P)) of it."""
-    contact, load, _, _ = cylinder(MU * (1 - np.sqrt(1 - share)), component=component)
+    contact, load, _, _ = rolled_cylinder(MU * (1 - np.sqrt(1 - share)), component=component)
     assert -contact.forces[:, 1 + component].sum() / (MU * load) == pytest.approx(share, rel=0.01)
     sticks = np.flatnonzero(contact.states == STICK)
     touching = np.flatnonzero(contact.states != OPEN)
@@ -56,20 +46,20 @@ def test_carter(share: float, component: int) -> None:
 
 
 def test_carter_in_full_slip() -> None:
-    contact, load, _, _ = cylinder(1.2 * MU)
+    contact, load, _, _ = rolled_cylinder(1.2 * MU)
     assert (contact.states != STICK).all()
     assert -contact.forces[:, 1].sum() == pytest.approx(MU * load, rel=1e-9)
 
 
 def test_hertz() -> None:
-    contact, load, x, step = cylinder(0.1 * MU)
+    contact, load, x, step = rolled_cylinder(0.1 * MU)
     inside = np.abs(x) < 0.8 * A
     hertz = 2 * load / (np.pi * A) * np.sqrt(1 - (x[inside] / A) ** 2)
     assert contact.forces[inside, 0] / step == pytest.approx(hertz, rel=0.01)
 
 
 def test_the_conditions_hold_point_by_point() -> None:
-    contact, _load, _, _ = cylinder(0.3 * MU)
+    contact, _load, _, _ = rolled_cylinder(0.3 * MU)
     normal, along = contact.forces[:, 0], contact.forces[:, 1]
     touching = contact.states != OPEN
     assert (normal[touching] > 0).all()
@@ -84,7 +74,7 @@ def test_the_conditions_hold_point_by_point() -> None:
 
 def test_the_parameters_of_the_search_do_not_matter() -> None:
     """N - gap/a and t - w/b hold for any a and b: a factor 10 000 between them leaves the forces as they are."""
-    small, large = (cylinder(0.4 * MU, scale)[0] for scale in (0.03, 300.0))
+    small, large = (rolled_cylinder(0.4 * MU, scale)[0] for scale in (0.03, 300.0))
     assert np.abs(small.forces - large.forces).max() < 1e-7 * np.abs(large.forces).max()
     assert (small.states == large.states).all()
 
@@ -145,7 +135,7 @@ def test_beam_on_an_elastic_bed() -> None:
 
 
 def test_without_friction_nothing_pulls() -> None:
-    contact, load, _, _ = cylinder(0.5 * MU, friction=0.0)
+    contact, load, _, _ = rolled_cylinder(0.5 * MU, friction=0.0)
     assert np.abs(contact.forces[:, 1:]).max() == 0.0
     assert contact.forces[:, 0].sum() == pytest.approx(load, rel=1e-8)
 

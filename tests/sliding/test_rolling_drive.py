@@ -51,6 +51,19 @@ def test_heat_of_the_rings_is_the_friction_power_of_roll():
     assert 2 * math.pi * result.tyre.motion(60.0).revolutions_per_second == pytest.approx(rolled.state.spin, rel=1e-9)
 
 
+@pytest.mark.parametrize("rolling", [False, True])
+@pytest.mark.parametrize("motion", ["linear", "large"])
+def test_hysteresis_is_that_of_roll(motion, rolling):
+    """The heat source of the conduction at the initial temperature is the loss of the strain cycle that `roll` has."""
+    base = {**FULL, "mechanics.motion": motion, "mechanics.rolling": rolling, "drive.duration": "20 s"}
+    tyre = study(base, slip_angle="3 deg")
+    rolled = tyre.roll(slip_angle=math.radians(3), motion=motion)
+    assert tyre.run().cold_power(10.0) == pytest.approx(rolled.hysteresis, rel=1e-9)
+    if rolling and motion == "linear":
+        # The contact takes the loss modulus at the strains without slip; without strain dependence both agree to 1e-6.
+        assert rolled.state.loss_power == pytest.approx(rolled.hysteresis, rel=0.1)
+
+
 def test_friction_heat_divides_by_effusivity_and_the_budget_closes():
     result = run(slip_angle="3 deg")
     phase, budget = result.sliding.phases[0], result.heat_budget

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -54,6 +55,13 @@ class NaturalModes(vibrations.NaturalFrequencies):
 
 class RollingWheel(rolls.RolledStudy):
     """A study's tyre in steady rolling with friction, with `save`."""
+
+    @cached_property
+    def hysteresis(self) -> float:
+        """Power of the strain cycle at the drive's initial temperature, W: the heat of a drive that rolls so."""
+        from tyrefem.mechanics.rolling.rolled_loss import hysteresis
+
+        return hysteresis(self)
 
     def wear(self) -> RingWear:
         """Wear of every ring of the tread, from its friction power; not compared with any measured tread.

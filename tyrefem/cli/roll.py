@@ -88,7 +88,7 @@ def roll(
     from tyrefem.mechanics.rolling.roll import NEEDS
     from tyrefem.mechanics.rolling.roll import roll as rolled_by
     from tyrefem.mechanics.rolling.slip_curve import slip_curve
-    from tyrefem.reports.roll import FILES, write_curve, write_files
+    from tyrefem.reports.roll import FILES, summary, write_curve, write_files
 
     texts = {
         "camber": camber, "torque": torque, "axle_force": axle_force, "turn_slip": turn_slip, "friction": friction,
@@ -127,7 +127,7 @@ def roll(
             write_curve(curve, folder, pictures=pictures)
         else:
             write_files(rolled, folder, pictures=pictures, vtk=vtk)
-    answer_with(result.summary())
+    answer_with(result.summary() if several else summary(rolled))
     say(words)
     say(f"results in {folder}")
 
@@ -157,6 +157,8 @@ def _placed(error: InputError, given: dict[str, Any]) -> InputError:
 
 
 def _words(rolled: RolledStudy) -> str:
+    from tyrefem.mechanics.rolling.rolled_loss import hysteresis
+
     state = rolled.state
     f_x, f_y, f_z = state.force
     m_x, m_y, m_z = state.moment
@@ -176,6 +178,7 @@ def _words(rolled: RolledStudy) -> str:
             f"{state.loss_power:.5g} W in the rubber"
         )
     lines += [
+        f"  hysteresis           {hysteresis(rolled):.5g} W of the strain cycle, as in a drive",
         f"  rolling radius       {rolled.rolling_radius * 1e3:.2f} mm effective, "
         f"{state.loaded_radius * 1e3:.2f} mm loaded",
         f"  friction             {state.friction_power:.5g} W; {100 * state.sliding_share:.3g} % of the load on points "

@@ -78,6 +78,8 @@ def key_of(name: str, choice: Mapping[str, str], runs: Sequence[str] | None = No
     return f"{name}{variant} in {', '.join(runs)}" if runs else f"{name}{variant}"
 
 
+#: Effects of slip, slip angle and camber, which a drive that rolls with friction has by its phases.
+SHORTCUTS = ("yaw", "tread-slip", "camber")
 #: A set of effects.
 Members = tuple[Candidate, ...]
 #: Function of a study: the effects that it may lack.
@@ -134,6 +136,18 @@ def possible(study: StudyData, candidates: Sequence[Candidate]) -> tuple[Members
         else:
             kept.append(candidate)
     return tuple(kept), tuple(notes)
+
+
+def beside_rolling(study: StudyData, candidates: Iterable[Candidate]) -> tuple[str, ...]:
+    """A note on effects of slip and camber where the tyre of the drive rolls with friction already."""
+    names = [name for name in SHORTCUTS if any(candidate.name == name for candidate in candidates)]
+    if not names or not study.card.boundaries.sliding.rolls:
+        return ()
+    return (
+        f"the drive rolls with friction (boundaries.sliding), so {', '.join(names)} would stand for more slip angle, "
+        "slip or camber than it states; their heat is a shortcut beside that of the rolling contact: if one is named, "
+        "change drive.slip_angle, drive.slip_ratio or drive.camber instead of adding it",
+    )
 
 
 def simulated(candidates: Sequence[Candidate], without: Collection[Unknown]) -> tuple[Members, tuple[str, ...]]:

@@ -12,7 +12,15 @@ from tyrefem.brief import Brief
 from tyrefem.compare.experiment import ColumnNames, Table, experiments
 from tyrefem.diagnose.amend import Change, amended, changes
 from tyrefem.diagnose.better_law import by_better_law
-from tyrefem.diagnose.candidates import Candidate, Members, SetPrior, in_single_runs, possible, simulated
+from tyrefem.diagnose.candidates import (
+    Candidate,
+    Members,
+    SetPrior,
+    beside_rolling,
+    in_single_runs,
+    possible,
+    simulated,
+)
 from tyrefem.diagnose.computed_wave import WithWave, computed_wave
 from tyrefem.diagnose.conformal import read_calibration
 from tyrefem.diagnose.criterion import Criterion
@@ -147,6 +155,7 @@ def _look(
     settings = method.settings
     runs = _measured_drives(study, table, columns, settings)
     in_all_runs, notes = possible(study, method.candidates(study))
+    notes = (*notes, *beside_rolling(study, in_all_runs))
     in_one_run = _in_single_runs(study, in_all_runs, runs, settings)
     candidates = (*in_all_runs, *in_one_run)
     method.strategy.check(study, candidates, settings)

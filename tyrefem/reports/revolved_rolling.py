@@ -10,11 +10,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.mechanics.footprint.loss import RevolutionLoss
 from tyrefem.mechanics.rolling.rolled_footprint import RolledFootprint
+from tyrefem.mechanics.rolling.rolled_loss import strain_losses
 from tyrefem.reports.revolved import FINE, RevolvedSection, wheel_angles
 
 if TYPE_CHECKING:
+    from tyrefem.mechanics.footprint.loss import RevolutionLoss
     from tyrefem.mechanics.footprint.strain_harmonics import StrainHarmonics
     from tyrefem.mechanics.rolling.roll import RolledStudy
 
@@ -73,9 +74,7 @@ class RevolvedRolling(RevolvedSection):
     @cached_property
     def losses(self) -> tuple[RevolutionLoss, ...]:
         """Losses of the strains by the cards."""
-        pressed, speed = self.pressed, self._rolled.state.motion.speed
-        cards = {region: pressed.study.materials[region] for region in pressed.tyre.body.parts}
-        return tuple(RevolutionLoss.of_cards(cycle, cards, speed, self._warm) for cycle in self.strains)
+        return strain_losses(self._rolled, self._warm, self._footprint)
 
     @cached_property
     def _warm(self) -> Array:

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.interruption import keeping
+from tyrefem.mechanics.rolling.rolled_loss import hysteresis
 from tyrefem.output import atomic_folder, write_json
 from tyrefem.reports.vtu import VtuFile
 
@@ -54,6 +55,11 @@ def rings_table(rolled: RolledStudy) -> Any:
     return pd.DataFrame(columns)
 
 
+def summary(rolled: RolledStudy) -> dict[str, Any]:
+    """Contents of ``roll.json``: `RolledStudy.summary`, and the hysteresis of the strain cycle."""
+    return {**rolled.summary(), "hysteresis_power_W": hysteresis(rolled)}
+
+
 def write_contact(rolled: RolledStudy, path: Path) -> Path:
     """Write the tread near the footprint as a .vtu surface: x forward, y left, z up from the contact centre, m.
 
@@ -87,7 +93,7 @@ def write_contact(rolled: RolledStudy, path: Path) -> Path:
 def write_files(rolled: RolledStudy, folder: Path, *, pictures: bool = True, vtk: bool = True) -> None:
     """``roll.json``, ``contact.csv``, ``rings.csv``, pictures of both tables, ``contact.vtu``, ``tyre.vtu``."""
     with atomic_folder(folder) as place:
-        write_json(rolled.summary(), place / "roll.json")
+        write_json(summary(rolled), place / "roll.json")
         _csv(contact_table(rolled), place / "contact.csv")
         _csv(rings_table(rolled), place / "rings.csv")
     if pictures:

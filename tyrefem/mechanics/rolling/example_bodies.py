@@ -6,9 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.mechanics.rolling.contact_body import COMPONENTS, NOWHERE, ContactBody
+from tyrefem.mechanics.rolling.friction import Control, RollingContact
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
+#: Radius of the example cylinder, m.
+CYLINDER_RADIUS = 50.0
 
 
 def line_upstream(count: int) -> Indices:
@@ -35,6 +38,24 @@ def half_plane(count: int, step: float, modulus: float) -> ContactBody:
 
     kernel = -2 / (np.pi * modulus * step) * (primitive(after) - primitive(before))
     return ContactBody(_uncoupled(kernel, kernel), line_upstream(count))
+
+
+def cylinder(
+    count: int, creep: float, friction: float, *, component: int = 0, scale: float = 1.0
+) -> tuple[Array, float, RollingContact]:
+    """Places (count,) over half the contact's length a = 1 m, load, N/m, and contact of an elastic cylinder on a plane.
+
+    Radius 50 m, E* = 1 Pa, under the load pi a^2 E*/(4 R) of Hertz. ``creep``: slip over travel, along (component 0) or
+    across (1) the travel. ``scale``: as of `RollingContact`. Solve it with values near [1 / 50].
+    """
+    radius, step = CYLINDER_RADIUS, 2.4 / count
+    x = np.asarray((np.arange(count) - (count - 1) / 2) * step, dtype=float)
+    load, arms, slips = np.pi / (4 * radius), np.zeros((count, 3)), np.zeros((count, 2))
+    arms[:, 0], slips[:, component] = 1.0, creep * step
+    sought = Control(-np.ones(count), np.zeros((count, 2)), arms, load)
+    body = half_plane(count, step, 1.0)
+    gaps = x**2 / (2 * radius)
+    return x, load, RollingContact(body, gaps, slips, np.full(count, friction), [sought], scale)
 
 
 def bristles(count: int, normal: float, tangential: float) -> ContactBody:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -201,11 +201,14 @@ class RolledTyre(Brief):
 
     @functools.cached_property
     def added_fields(self) -> SectionFields:
-        """`fields`; beside a pressed shape, those of the forces that friction adds to it."""
-        shape = self.grid.shape_forces
-        if shape is None:
+        """`fields`; beside a pressed shape, what they add to it: less the motion without loss under its forces."""
+        shape, forces = self.grid.shape, self.grid.shape_forces
+        if shape is None or forces is None:
             return self.fields
-        return SectionFields.of(self.grid, self.components - np.moveaxis(shape, 1, 2), self.deflection)
+        pressed = np.moveaxis(forces, 1, 2)
+        if shape.elastic is None:
+            return SectionFields.of(self.grid, self.components - pressed, self.deflection)
+        return replace(self.fields, less=SectionFields.of(self.grid.under(shape.elastic), pressed))
 
     @functools.cached_property
     def body_loss(self) -> BodyLoss:

@@ -60,12 +60,14 @@ class SectionFields(Brief):
         nodes, N per radian; of a half section, their symmetric part.
     deflection : m, of the tyre that bears them.
     antisymmetric : of a half section, compliance and loads of the antisymmetric part.
+    less : motion that is taken off; None: none.
     """
 
     tread: TreadCompliance
     loads: Complex
     deflection: float = 0.0
     antisymmetric: tuple[TreadCompliance, Complex] | None = None
+    less: SectionFields | None = None
 
     @classmethod
     def of(cls, grid: RollingGrid, components: Array, deflection: float = 0.0) -> SectionFields:
@@ -93,7 +95,8 @@ class SectionFields(Brief):
     @functools.cached_property
     def amplitudes(self) -> Complex:
         """(harmonics + 1, n_dofs) amplitudes U, m; of a half section, of its symmetric motion."""
-        return section_motion(self.tread, self.loads)
+        motion = section_motion(self.tread, self.loads)
+        return motion if self.less is None else motion - self.less.amplitudes
 
     @functools.cached_property
     def sides(self) -> tuple[Complex, ...]:
@@ -102,6 +105,8 @@ class SectionFields(Brief):
         if self.antisymmetric is None:
             return (self.amplitudes,)
         odd = section_motion(*self.antisymmetric)
+        if self.less is not None and len(self.less.sides) == 2:
+            odd = odd - (self.less.sides[0] - self.less.sides[1]) / 2
         return self.amplitudes + odd, self.amplitudes - odd
 
     def strains(self, angles: Array) -> tuple[Array, ...]:
