@@ -6,13 +6,18 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from tyrefem.api.verbs import with_verbs
+from tyrefem.api.verbs import shown, with_verbs
 from tyrefem.diagnose import diagnosis
 from tyrefem.plan import steps as test_plan
 
 
 class Diagnosis(diagnosis.DiagnosisData):
     """Result of a diagnosis, with `to_dict` and `save`."""
+
+    def _repr_html_(self) -> str | None:
+        from tyrefem.reports.notebook import diagnosis_page
+
+        return shown(lambda: diagnosis_page(self))
 
     @classmethod
     def of(cls, data: diagnosis.DiagnosisData) -> Diagnosis:

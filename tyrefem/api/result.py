@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, overload
 
 from tyrefem.api.field import SectionField
-from tyrefem.api.verbs import with_verbs
+from tyrefem.api.verbs import shown, with_verbs
 from tyrefem.simulation import result
 from tyrefem.sweep import campaign
 
@@ -19,6 +19,11 @@ if TYPE_CHECKING:
 
 class Result(result.ResultData):
     """Result of a run, with methods to write and plot it. `tyrefem.load` gives it back from its folder."""
+
+    def _repr_html_(self) -> str | None:
+        from tyrefem.reports.notebook import result_page
+
+        return shown(lambda: result_page(self))
 
     def summary(self) -> dict[str, Any]:
         """Contents of `summary.json`: inputs, versions, mesh, tolerance and main results."""

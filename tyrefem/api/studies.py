@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from tyrefem.api.result import Campaign, Result
 from tyrefem.api.study_mechanics import StudyMechanics
 from tyrefem.api.study_questions import StudyQuestions
-from tyrefem.api.verbs import with_verbs
+from tyrefem.api.verbs import shown, with_verbs
 from tyrefem.mechanics.strain_laws import strain_law
 
 if TYPE_CHECKING:
@@ -29,6 +29,11 @@ class Study(StudyQuestions, StudyMechanics):
         super().__post_init__(like, built)
         # The data's package does not import the strain laws; this class checks their name.
         strain_law(self)
+
+    def _repr_html_(self) -> str | None:
+        from tyrefem.reports.notebook import study_page
+
+        return shown(lambda: study_page(self))
 
     def run(self, progress: Callable[[float], None] | None = None, *, partial: bool = False) -> Result:
         """Simulate the drive. ``progress`` is called with the time (s) after every step.

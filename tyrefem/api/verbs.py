@@ -2,10 +2,24 @@
 
 from __future__ import annotations
 
+import logging
+from collections.abc import Callable
 from dataclasses import fields
 from typing import Any, TypeVar
 
 Data = TypeVar("Data")
+
+
+_LOG = logging.getLogger(__name__)
+
+
+def shown(make: Callable[[], str]) -> str | None:
+    """HTML for a notebook; None, and so the text of `repr`, where it cannot be made."""
+    try:
+        return make()
+    except Exception as error:
+        _LOG.info("no HTML for the notebook: %r", error)
+        return None
 
 
 def with_verbs(kind: type[Data], data: Any, **changes: Any) -> Data:
