@@ -42,7 +42,7 @@ def chosen(kind: str) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize("kind", ["effect", "boundary-law", "tan-delta-law", "strain-law"])
-def test_a_study_with_the_page_s_table_uses_it(write: Write, kind: str) -> None:
+def test_a_study_with_the_page_s_table_uses_it(write: Write, tmp_path: Path, kind: str) -> None:
     file = write(kind)
     table = chosen(kind)
     if kind == "effect":
@@ -59,6 +59,8 @@ def test_a_study_with_the_page_s_table_uses_it(write: Write, kind: str) -> None:
     assert summary == [plugin.to_dict()]
     assert set(summary[0]) == {"kind", "name", "class", "file", "version", "sha256"}
     assert study.run().summary()["plugins"] == []
+    changed.run().report(tmp_path / "report.html")
+    assert f"{plugin.name}, from {file}" in (tmp_path / "report.html").read_text(encoding="utf-8")
 
 
 def test_the_tread_of_the_page_has_its_friction(write: Write) -> None:

@@ -178,3 +178,12 @@ def test_a_law_of_frequency_has_full_runs_where_it_cannot_be_reduced(write: Writ
     swept = study.sweep({"drive.speed": ("10 mph", "20 mph", 12)}).swept
     assert swept is not None
     assert swept.failed == {}
+
+
+def test_a_comparison_records_what_it_used(write: Write) -> None:
+    file = write("effect")
+    coarse = {"mesh.size": "12 mm", "mesh.element": "P1", "numerics.tolerance": "0.5 delta_degC"}
+    study = tf.study("example-validation", {**coarse, "effects": OWN["effects"]})
+    (used,) = study.compare(inputs=False).to_dict()["plugins"]
+    assert (used["kind"], used["name"], used["file"]) == ("effect", "lamp", str(file))
+    assert study.replace({"effects": []}).compare(inputs=False).to_dict()["plugins"] == []

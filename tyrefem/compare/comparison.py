@@ -41,6 +41,7 @@ class ComparisonData(Brief):
     curves : run -> computed readings at the saved times (``time_s``, degC).
     notes : sentences on omitted data and uncertainties; those beginning with "ERROR" also stand in the summary.
     k : coverage factor. reduced : certificate of the reduced model for changed inputs; None: full runs only.
+    plugins : the user's own effects and laws in the study, as in a ``summary.json``.
     """
 
     study: str
@@ -51,6 +52,7 @@ class ComparisonData(Brief):
     notes: tuple[str, ...] = ()
     k: float = 2.0
     reduced: ReducedInputCertificate | None = None
+    plugins: tuple[Mapping[str, Any], ...] = ()
 
     def _title(self) -> str:
         return f"of {self.study}"
@@ -152,6 +154,7 @@ class ComparisonData(Brief):
             "rms_by_sensor_K": {str(name): float(value) for name, value in self.by_sensor.items()},
             "rows": self.table.to_dict(orient="records"),
             "inputs": self.inputs.to_dict(orient="records"),
+            "plugins": list(self.plugins),
         }
         plain: dict[str, Any] = jsonable(data)
         return plain

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, TypedDict, Unpack
 
 import numpy as np
@@ -24,6 +24,7 @@ from tyrefem.compare.reduced_inputs import (
 from tyrefem.compare.runs import Runs, store_key
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
+from tyrefem.inputs.study_plugins import plugin_summary
 from tyrefem.inputs.uncertain_numbers import left_out
 from tyrefem.requirements import Requirements
 from tyrefem.simulation.result import ResultData
@@ -106,10 +107,12 @@ def compare(
         raise InputError("no measured time is within the simulated span: " + "; ".join(notes))
     notes += [*model_notes, *_other_columns_note(planned), *_uncertainty_notes(study, planned, judged.inputs)]
     regions = {number.key: number.regions for number in getattr(study, "uncertain_numbers", ())}
-    return comparison_of(
+    comparison = comparison_of(
         study.name, all_histories, curves=curves, relative_sd=keys, regions=regions, notes=tuple(notes), k=judged.k,
         reduced=certificate,
     )  # fmt: skip
+    used = plugin_summary(study if isinstance(study, StudyData) else None)["plugins"]
+    return replace(comparison, plugins=tuple(used))
 
 
 def _drive(study: StudyLike, experiment: Experiment) -> str:

@@ -58,12 +58,12 @@ def _texts(value: Any) -> Iterator[str]:
             yield from _texts(entry)
 
 
-def plugin_summary(study: StudyData, *also: Any) -> dict[str, Any]:
+def plugin_summary(study: StudyData | None, *also: Any) -> dict[str, Any]:
     """``plugins`` of a ``summary.json``: kind, name, class, file or package, version and digest of each plugin used.
 
-    ``also``: plain data that may name more of them.
+    ``also``: plain data that may name more of them. ``study``: None, where the data are all.
     """
-    used = {*plugins_of(study), *named_plugins(list(also))}
+    used = {*(plugins_of(study) if study is not None else ()), *named_plugins(list(also))}
     return {
         "plugins": [plugin.to_dict() for plugin in sorted(used, key=lambda plugin: (plugin.kind.name, plugin.name))]
     }

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from tyrefem.inputs.study_plugins import plugin_summary
 from tyrefem.output import jsonable, versions
 from tyrefem.plan.words import plan_words
 
@@ -24,6 +25,7 @@ def record(plan: PlanData) -> dict[str, Any]:
         "notes": list(plan.notes),
         "wall_time_s": plan.seconds,
         "versions": versions(),
+        **plugin_summary(None, [list(entry.key) for entry in plan.beliefs.sets]),
     }
     plain: dict[str, Any] = jsonable(contents)
     return plain

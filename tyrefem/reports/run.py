@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tyrefem.geometry.place_names import place
+from tyrefem.inputs.study_plugins import plugins_of
 from tyrefem.output import atomic_path, versions
 from tyrefem.reports.inputs import (
     assumptions,
@@ -289,6 +290,7 @@ def _numerics(result: ResultData) -> Rows:
         ["mesh error", f"{study.numerical_sd:g} K (standard deviation assumed by the study)"],
         ["wall time", f"{result.wall_time:.2f} s"],
         ["versions", ", ".join(f"{name} {version}" for name, version in versions().items())],
+        *(["own " + plugin.kind.name, f"{plugin.name}, from {plugin.origin.words}"] for plugin in plugins_of(study)),
     ]  # fmt: skip
     if not study.section.half:
         return rows

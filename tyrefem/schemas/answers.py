@@ -88,6 +88,7 @@ ANSWERS: dict[str, Keys] = {
         "rms_by_sensor_K": "table: Sensor -> rms deviation.",
         "rows": "list: Deviation and validation uncertainty by run, sensor and phase.",
         "inputs": "list: Change of each deviation by each uncertain number.",
+        "plugins": "list: Your own effects and laws in the study.",
     },
     "diagnose": {
         **_STUDY, **_VERSIONS, **_AGAIN,
