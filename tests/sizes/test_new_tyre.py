@@ -121,6 +121,15 @@ def test_numbers_and_cards_of_the_first_study_come_along(here: Path) -> None:
     assert "# dropped: 1 effects of measured runs" in words
 
 
+def test_measured_tables_are_dropped_and_uncertainties_kept(here: Path) -> None:
+    """Names with dots stay whole; the study of a diagnosis becomes one without data."""
+    first, new = tf.study("hidden-effect"), made("hidden-effect", "24x7.7 16PR", "aircraft-bias-24x7.7-16pr")
+    assert len(first.measured) == 4
+    assert new.measured == ()
+    assert new.data["uncertainty"] == first.data["uncertainty"]
+    assert "# dropped: 4 measured tables" in (here / "studies/aircraft-bias-24x7.7-16pr/study.toml").read_text()
+
+
 def test_two_arcs_keep_their_form(here: Path) -> None:
     """Scaled to its first size nothing moves; to another, width and bead follow the size, gauges its plies."""
     first = tf.study("nasa-22x5.5-8pr").section

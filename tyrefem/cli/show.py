@@ -16,6 +16,7 @@ from tyrefem.requirements import Requirements
 
 if TYPE_CHECKING:
     from tyrefem.api import Study
+    from tyrefem.simulation.strain_by_region import StrainByRegion
 
 #: Suffixes of a mesh file.
 MESHES = (".msh", ".vtu", ".vtk")
@@ -147,13 +148,12 @@ def _write_mesh(name: str, values: dict[str, Any], case: str | None, path: Path)
 
 
 def _strain(name: str, values: dict[str, Any], case: str | None) -> tuple[Any, dict[str, Any]]:
-    from tyrefem.reports.figures.strain import strain_figure
     from tyrefem.simulation.rolling_tyre import RollingTyre
+    from tyrefem.simulation.strain_by_region import StrainByRegion
 
     loaded = _single(name, values, case)
-    if loaded.card.mechanics.strain != "arcs":
-        raise InputError('the picture of the strain cycle needs strain = "arcs"', field="mechanics.strain", file=name)
-    largest = RollingTyre(loaded).schedule.cases[0][-1]
+    strains = StrainByRegion.of(RollingTyre(loaded))
+    largest = strains.case
     facts = {
         "load_N": largest.load,
         "pressure_Pa": largest.pressure,
@@ -162,7 +162,46 @@ def _strain(name: str, values: dict[str, Any], case: str | None) -> tuple[Any, d
         "footprint_length_m": largest.footprint_length,
         "road_fraction": largest.road_fraction,
     }
-    return strain_figure(loaded), facts
+    _print_strains(strains)
+    if loaded.card.mechanics.strain == "arcs":
+        from tyrefem.reports.figures.strain import cycle_figure
+
+        return cycle_figure(loaded, strains.tyre.schedule), facts
+    from tyrefem.reports.figures.heat_source import cycle_heat_figure
+
+    return cycle_heat_figure(strains), facts
+
+
+def _print_strains(strains: StrainByRegion) -> None:
+    """Print a row per region."""
+    from rich.console import Console
+    from rich.table import Table
+
+    elastic = bool(strains.amplitudes)
+    table = Table(box=None, padding=(0, 1, 0, 0))
+    table.add_column("", no_wrap=True)
+    heads = ["volume cm3", "U mean kJ/m3", "U max kJ/m3", "at s mm", "depth mm"]
+    heads += ["strain mean %", "strain max %"] if elastic else []
+    for head in [*heads, "heat W", "share %"]:
+        table.add_column(head, justify="right")
+    for row in strains.table.to_dict("records"):
+        cells = [
+            f"{1e6 * row['volume_m3']:.0f}", f"{1e-3 * row['energy_mean_J_m3']:.2f}",
+            f"{1e-3 * row['energy_highest_J_m3']:.1f}", f"{1e3 * row['highest_s_m']:.0f}",
+            f"{1e3 * row['highest_depth_m']:.1f}",
+        ]  # fmt: skip
+        if elastic:
+            cells += [_percent(row["amplitude_mean"]), _percent(row["amplitude_highest"])]
+        table.add_row(row["region"], *cells, f"{row['heat_W']:.1f}", f"{100 * row['heat_share']:.1f}")
+    Console(highlight=False).print(table)
+    typer.echo("U: strain energy per cycle, highest at s and depth; heat of the whole tyre at the start")
+    if elastic:
+        typer.echo("strain: shear strain amplitude of a revolution")
+    typer.echo("")
+
+
+def _percent(share: float) -> str:
+    return "" if share != share else f"{100 * share:.2f}"
 
 
 def _effect(name: str) -> dict[str, Any]:

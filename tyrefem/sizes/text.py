@@ -97,7 +97,7 @@ def _pairs(table: Mapping[str, Any]) -> Iterator[str]:
     for key, value in table.items():
         text = _value(value)
         if len(text) > WIDTH and isinstance(value, Mapping) and isinstance(value.get("values"), list):
-            yield f"{key} = {{ unit = {_value(value['unit'])}, values = ["
+            yield f"{_key(key)} = {{ unit = {_value(value['unit'])}, values = ["
             row = ""
             for item in map(_value, value["values"]):
                 if len(row) + len(item) > WIDTH - 6:
@@ -107,11 +107,11 @@ def _pairs(table: Mapping[str, Any]) -> Iterator[str]:
             yield f"    {row.rstrip()}"
             yield "] }"
         elif len(text) > WIDTH and isinstance(value, list):
-            yield f"{key} = ["
+            yield f"{_key(key)} = ["
             yield from (f"    {_value(item)}," for item in value)
             yield "]"
         else:
-            yield f"{key} = {text}"
+            yield f"{_key(key)} = {text}"
 
 
 def _value(value: Any) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -15,7 +16,9 @@ from tyrefem.reports.figures.style import ENERGY_MAP, Label, digits, millimetres
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from tyrefem.inputs.study import StudyData
     from tyrefem.simulation.result import ResultData
+    from tyrefem.simulation.strain_by_region import StrainByRegion
 
 Array = NDArray[np.float64]
 #: Share of the section's area that a colour scale spans; higher values have the last colour.
@@ -58,18 +61,50 @@ def heat_source_figure(result: ResultData) -> Figure:
     i = result.rolling_reading
     zones = zone_heat(result, len(result.times) - 1 if i is None else i)
     total = sum(zone.power for zone in zones)
+    return energy_and_heat(result.study, zones, _subtitle(result, i, total))
+
+
+def cycle_heat_figure(strains: StrainByRegion) -> Figure:
+    """Draw strain energy per cycle (left) and heat source at the start (right) of a load case."""
+    tyre, case = strains.tyre, strains.case
+    operators, zones = tyre.problem.operators, []
+    powers = dict(zip(strains.table["region"], strains.table["heat_W"], strict=True))
+    for zone in tyre.schedule.zones:
+        corners, _ = triangles(operators, operators.elements(zone.name))
+        dofs = operators.dofs(zone.name)
+        numbers = np.full(operators.size, -1)
+        numbers[dofs] = np.arange(len(dofs))
+        nodes = tyre.problem.points(zone.name)
+        name = zone.name if zone.name == zone.title else f"{zone.name}: {zone.title}"
+        zones.append(
+            ZoneHeat(
+                zone.name, zone.title, nodes, numbers[corners], strains.cycle.energy_density(zone.name, nodes),
+                strains.heat_density(zone, nodes), float(powers[name]),
+            )
+        )  # fmt: skip
+    road = "flat road" if math.isinf(case.drum_diameter) else f"drum Ø {case.drum_diameter:.3g} m"
+    subtitle = (
+        f"{case.load / 1e3:.4g} kN at {case.pressure / 1e3:.4g} kPa, {road}: D = {case.deflection * 1e3:.1f} mm; "
+        f"left: strain energy per cycle; right: heat source at the start"
+    )
+    return energy_and_heat(tyre.study, zones, subtitle)
+
+
+def energy_and_heat(study: StudyData, zones: list[ZoneHeat], subtitle: str) -> Figure:
+    """Draw strain energy per cycle (left) and heat source (right) of zones, with their powers beside."""
+    total = sum(zone.power for zone in zones)
     energies, sources = [zone.energy for zone in zones], [zone.source for zone in zones]
     top_u, top_q = scale_top(zones, energies), scale_top(zones, sources)
     factor_u, unit_u = si(top_u, "J/m³")
     factor_q, unit_q = si(top_q, "W/m³")
     rows = [_row(zone, total) for zone in zones]
     names = [zone.title if zone.name == zone.title else f"{zone.name}: {zone.title}" for zone in zones]
-    drawn = canvas(result.study.section, names, rows, bars=2)
+    drawn = canvas(study.section, names, rows, bars=2)
     left = right = None
     for zone in zones:
         left = _half(drawn, zone, zone.energy / factor_u, -1.0, ENERGY_MAP, top_u / factor_u or 1.0)
         right = _half(drawn, zone, zone.source / factor_q, 1.0, temperature_map(), top_q / factor_q or 1.0)
-    draw_outlines(drawn.axes, result.study.section, color="#505050", width=0.7)
+    draw_outlines(drawn.axes, study.section, color="#505050", width=0.7)
     drawn.axes.plot([0, 0], [drawn.section.place(0.0, 0.0)[0] * 1e3, drawn.high], color="white", lw=2.5, zorder=4)
     _bar(drawn, left, "strain energy per cycle U", unit_u, max(float(u.max()) for u in energies) / factor_u, -1.0)
     _bar(drawn, right, "heat source q", unit_q, max(float(q.max()) for q in sources) / factor_q, 1.0)
@@ -77,7 +112,7 @@ def heat_source_figure(result: ResultData) -> Figure:
     order = sorted(range(len(zones)), key=lambda n: -anchors[n][1])
     drawn.beside([Label(names[n], -anchors[n][0], anchors[n][1]) for n in order], -1.0)
     drawn.beside([Label(rows[n], anchors[n][0], anchors[n][1]) for n in order], 1.0)
-    title(drawn.figure, result.study.title, _subtitle(result, i, total))
+    title(drawn.figure, study.title, subtitle)
     return drawn.figure
 
 
