@@ -13,6 +13,7 @@ from tyrefem.cli import app
 #: Values of arguments, and of options without a default, by name.
 ARGUMENTS = {
     "STUDY": "study.toml", "STUDY|FILE": "study.toml", "RIG": "rig", "FILE": "study.toml", "WHAT": "studies",
+    "CARD": "thermal.toml",
 }  # fmt: skip
 OPTIONS = {
     "speed": "0.35 m/s", "length": "225 mm", "friction": "0.5", "footprint": "0.14 m", "pressure": "300 kPa",

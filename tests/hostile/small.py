@@ -82,13 +82,29 @@ power = "1 W"
 """
 
 
+THERMAL = """title = "one body"
+[bodies.tyre]
+heat_share = 1.0
+[[films]]
+between = ["tyre", "air"]
+[[runs]]
+name = "a"
+speed = "10 m/s"
+rolling_resistance = "50 N"
+air = "20 degC"
+plateau = { tyre = "70 degC" }
+warm_up = { tyre = "600 s" }
+"""
+
+
 def write(folder: Path) -> Path:
-    """A folder with ``study.toml``, its table, a rig with its table, a sweep file; returns it."""
+    """A folder with ``study.toml``, its table, a rig with its table, a thermal card; returns it."""
     from tyrefem.cli import main
 
     folder.mkdir(parents=True)
     (folder / "study.toml").write_text(study())
     (folder / "measured.csv").write_text(table())
+    (folder / "thermal.toml").write_text(THERMAL)
     (folder / "rig").mkdir()
     (folder / "rig" / "rig.toml").write_text(RIG)
     assert main(["rig", "simulate", str(folder / "rig"), "--seed", "1", "--out", str(folder / "simulated")]) == 0

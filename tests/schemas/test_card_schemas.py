@@ -28,7 +28,7 @@ pytestmark = pytest.mark.fast
 ROOT = Path(__file__).resolve().parents[2]
 SHIPPED = {
     "study": "studies/*/study.toml", "section": "geometry/*.toml", "material": "materials/*.toml",
-    "sweep": "studies/*/sweep.toml", "rig": "studies/*/rig.toml",
+    "sweep": "studies/*/sweep.toml", "rig": "studies/*/rig.toml", "thermal": "studies/*/thermal.toml",
 }  # fmt: skip
 FILES_SHIPPED = [(kind, file) for kind, pattern in SHIPPED.items() for file in sorted(ROOT.glob(pattern))]
 #: A unit of each kind of quantity, in which `parse` reads its names.

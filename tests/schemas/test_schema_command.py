@@ -47,7 +47,7 @@ def with_schemas(here: Path) -> Path:
 
 def test_it_writes_schemas_and_settings(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["schema"]) == 0
-    kinds = {"study", "section", "material", "sweep", "rig"}
+    kinds = {"study", "section", "material", "sweep", "rig", "thermal", "answers"}
     assert {file.stem for file in (here / "schemas").iterdir()} >= kinds
     assert json.loads((here / "schemas/study.json").read_text(encoding="utf-8"))["title"] == "A tyrefem study"
     assert 'path = "schemas/study.json"' in (here / SETTINGS).read_text(encoding="utf-8")

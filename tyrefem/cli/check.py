@@ -105,6 +105,11 @@ def _card(path: Path) -> str:
         warn(warning.within(file=path) for warning in rig.warnings())
         words = f"a laser rig, {len(rig.layers)} layer(s), {len(rig.sensors)} sensors, {len(rig.runs)} run(s)"
         return f"{words}, {_rig_tables(rig, path)}"
+    if "bodies" in data and "films" in data:
+        from tyrefem.lumped.card import ThermalCard
+
+        thermal = ThermalCard.check(data, path)
+        return f"a thermal card of {len(thermal.bodies)} bodies, {len(thermal.films)} films, {len(thermal.runs)} run(s)"
     if isinstance(data.get("study"), str):
         from tyrefem.sweep.design import loaded
 

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from tyrefem.interruption import keeping
 from tyrefem.output import atomic_folder, write_json
+from tyrefem.reports.pressure_map import pressed_map
 from tyrefem.reports.revolved import RevolvedSection, wheel_angles
 
 if TYPE_CHECKING:
@@ -79,7 +80,8 @@ ANGLES = np.linspace(-np.pi, np.pi, 721)
 
 #: Files that `write_files` may write.
 FILES = (
-    "press.json", "load-deflection.csv", "strain-cycle.csv", "cord-tension.csv", "harmonics.csv", "tyre.vtu",
+    "press.json", "footprint-pressure.csv", "load-deflection.csv", "strain-cycle.csv", "cord-tension.csv",
+    "harmonics.csv", "tyre.vtu",
     *(f"{name}.png" for name in ("section", "section-loaded", "pressure", "load-deflection", "strain-cycle",
                                  "cord-tension", "harmonics")),
 )  # fmt: skip
@@ -94,8 +96,8 @@ def write_files(
     pictures: bool = True,
     vtk: bool = True,
 ) -> None:
-    """``press.json``, ``load-deflection.csv``, ``strain-cycle.csv``, ``cord-tension.csv``, ``harmonics.csv``; pictures
-    of these, of the section and of the contact pressure; ``tyre.vtu``.
+    """``press.json``, ``footprint-pressure.csv``, ``load-deflection.csv``, ``strain-cycle.csv``, ``cord-tension.csv``,
+    ``harmonics.csv``; pictures of these, of the section and of the contact pressure; ``tyre.vtu``.
 
     The tables are written before the pictures. Without cords there is no ``cord-tension``; without rolling there is
     no ``harmonics``.
@@ -132,6 +134,7 @@ def _tables(
         history = pressed.cycle.strain(ANGLES, [place.element])[:, 0, place.point]
         strains += [[place.name, place.region, *place.place, *row] for row in np.column_stack([degrees, history.T])]
     tables: dict[str, Iterable[Sequence[Any]]] = {
+        "footprint-pressure": pressed_map(pressed.footprint).rows(),
         "load-deflection": [["deflection_m", "load_N", "harmonics"], *np.column_stack([curve, harmonics])],
         "strain-cycle": strains,
     }

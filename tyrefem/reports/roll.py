@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 from tyrefem.interruption import keeping
 from tyrefem.mechanics.rolling.rolled_loss import hysteresis
 from tyrefem.output import atomic_folder, write_json
+from tyrefem.reports.pressure_map import rolled_map
 from tyrefem.reports.vtu import VtuFile
 
 if TYPE_CHECKING:
@@ -20,8 +22,8 @@ if TYPE_CHECKING:
 
 Array = NDArray[Any]
 #: Files that `write_files` and `write_curve` may write.
-FILES = ("roll.json", "contact.csv", "rings.csv", "contact.vtu", "tyre.vtu", "contact.png", "rings.png",
-         "curve.csv", "curve.png")  # fmt: skip
+FILES = ("roll.json", "footprint-pressure.csv", "contact.csv", "rings.csv", "contact.vtu", "tyre.vtu", "contact.png",
+         "rings.png", "curve.csv", "curve.png")  # fmt: skip
 
 
 def contact_table(rolled: RolledStudy) -> Any:
@@ -91,11 +93,15 @@ def write_contact(rolled: RolledStudy, path: Path) -> Path:
 
 
 def write_files(rolled: RolledStudy, folder: Path, *, pictures: bool = True, vtk: bool = True) -> None:
-    """``roll.json``, ``contact.csv``, ``rings.csv``, pictures of both tables, ``contact.vtu``, ``tyre.vtu``."""
+    """``roll.json``, ``footprint-pressure.csv``, ``contact.csv``, ``rings.csv``, pictures of both,
+    ``contact.vtu``, ``tyre.vtu``."""
     with atomic_folder(folder) as place:
         write_json(summary(rolled), place / "roll.json")
         _csv(contact_table(rolled), place / "contact.csv")
         _csv(rings_table(rolled), place / "rings.csv")
+        heading, *rows = rolled_map(rolled.state).rows()
+        with (place / "footprint-pressure.csv").open("w", encoding="utf-8", newline="") as stream:
+            csv.writer(stream, lineterminator="\n").writerows([heading, *rows])
     if pictures:
         from tyrefem.reports.figures.rolling import contact_figure, rings_figure
         from tyrefem.reports.figures.style import png

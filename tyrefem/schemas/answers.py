@@ -258,6 +258,12 @@ ANSWERS: dict[str, Keys] = {
         "solutions": "integer: Number of computed tests.",
     },
     "rig layers": {"rows": "list: Number of layers, misfit, evidence and properties."},
+    "thermal-card": {
+        "title": "text: Title of the card.", "numbers": "list: Name, unit, value, sd, verdict; per area where known.",
+        "rows": "list: Measured beside computed, with the standard deviation.",
+        "misfit": "number: Mean square of the residuals over their sd, per degree of freedom.",
+        "heat_sd": "number: Relative standard deviation of the heat.",
+    },
     "road film": {
         "films_W_m2_K": "table: Law -> film during contact.",
         "constant_road_temperature_W_m2_K": "number: Film of a road of constant temperature.",

@@ -10,6 +10,7 @@ from tyrefem.effects import catalogue
 from tyrefem.geometry.card import SectionCard
 from tyrefem.heating_test.card import RigCard
 from tyrefem.inputs.study_card import StudyCard
+from tyrefem.lumped.card import ThermalCard
 from tyrefem.materials.card import MaterialCard
 from tyrefem.mechanics.strain_laws import strain_laws
 from tyrefem.schemas.draft import DRAFT, Schema, hoisted, table_schema
@@ -31,6 +32,11 @@ def section_schema() -> Schema:
 def rig_schema() -> Schema:
     """``rig.toml``."""
     return _of_file(table_schema(RigCard), "A tyrefem laser rig", "docs/rig.md")
+
+
+def thermal_schema() -> Schema:
+    """``thermal.toml``."""
+    return _of_file(table_schema(ThermalCard), "A tyrefem thermal card", "docs/thermal-card.md")
 
 
 def study_schema() -> Schema:
@@ -89,4 +95,5 @@ FILES: dict[str, tuple[tuple[str, ...], Callable[[], Schema]]] = {
     "material": (("**/materials/*.toml",), material_schema),
     "sweep": (("**/sweep.toml",), sweep_schema),
     "rig": (("**/rig.toml",), rig_schema),
+    "thermal": (("**/thermal.toml",), thermal_schema),
 }

@@ -40,6 +40,16 @@ KEYS = {
     "exponent": "Exponent.",
 }
 OF_CLASS = {
+    "LumpedRun.name": "Name of the run.",
+    "LumpedRun.rolling_resistance": "Rolling resistance at the plateau; its heat is force times speed.",
+    "LumpedRun.speed": "Speed of the test.",
+    "LumpedRun.load": "Load of the test, for the record.",
+    "LumpedRun.air": "Temperature of the air.",
+    "LumpedRun.road": "Temperature of the road; by default the air's.",
+    "LumpedRun.rim": "Temperature of the rim; by default the air's.",
+    "ThermalCard.bodies": "Bodies by name, each of one temperature.",
+    "ThermalCard.films": "Films between bodies and surroundings.",
+    "ThermalCard.runs": "Tests at constant speed and load.",
     "Effect.sd": "Parameter -> standard deviation of its value, as a diagnosis wrote it; no computation uses it.",
     "GivenFootprint.length": "Length of the footprint.",
     "TrR64.shape_factor": "C_z: 0.02 for type VII aircraft tyres.",

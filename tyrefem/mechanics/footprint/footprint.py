@@ -126,6 +126,13 @@ class Footprint(Brief):
         return float(both * per_angle.sum() * self.grid.step)
 
     @property
+    def normal_forces(self) -> Array:
+        """(n_angles, m) force on the road along its normal at one side of the wheel, N: both sides at angles > 0 have
+        it."""
+        shares = np.repeat(self.grid.sides, len(self.grid.tread.nodes))
+        return np.asarray(self._normal_components * self.forces / shares).reshape(self.grid.n_angles, -1)
+
+    @property
     def _normal_components(self) -> Array:
         """(k,) component of each unit force along the road's normal."""
         road, grid = self.pressing.road, self.grid

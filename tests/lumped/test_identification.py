@@ -1,0 +1,149 @@
+"""A lumped tyre: closed forms, known numbers out of noise and out of a run, and what cannot be told."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tyrefem.cards import merged, read_toml
+from tyrefem.cli import main
+from tyrefem.errors import InputError
+from tyrefem.lumped.card import ThermalCard
+from tyrefem.lumped.identification import LumpedIdentification, identify
+from tyrefem.lumped.network import LumpedNetwork
+
+pytestmark = pytest.mark.fast
+
+ROOT = Path(__file__).resolve().parents[2]
+SHIPPED = ROOT / "studies/thermal-passenger/thermal.toml"
+#: Numbers with which the shipped card was computed, studies/thermal-passenger/README.md.
+TRUE = {
+    "conductance tread-carcass": 12.0, "conductance tread-air at rest": 3.0, "conductance tread-air per speed": 0.35,
+    "conductance tread-road": 8.0, "conductance carcass-air": 4.0, "conductance carcass-gas": 5.0,
+    "conductance gas-rim": 2.0, "heat capacity tread": 6000.0, "heat capacity carcass": 5500.0,
+}  # fmt: skip
+BODY: dict[str, Any] = {
+    "title": "one body",
+    "bodies": {"tyre": {"heat_share": 1.0}},
+    "films": [{"between": ["tyre", "air"]}],
+    "runs": [
+        {"name": "a", "speed": "10 m/s", "rolling_resistance": "50 N", "air": "20 degC",
+         "plateau": {"tyre": "70 degC"}, "warm_up": {"tyre": "600 s"}},
+    ],
+}  # fmt: skip
+
+
+def shipped(changes: dict[str, Any] | None = None) -> ThermalCard:
+    return ThermalCard.check(merged(read_toml(SHIPPED), changes or {}))
+
+
+def numbers(found: LumpedIdentification) -> dict[str, tuple[float, float]]:
+    return {number.name: (number.value, number.sd) for number in found.numbers}
+
+
+def test_one_body_is_a_closed_form() -> None:
+    """G = P/(T - T_a), C = G tau; sd of G: that of the temperature rise; of C: with that of the time; all with P's."""
+    card = ThermalCard.check(BODY | {"temperature_sd": "1 K", "time_sd": 0.05, "heat_sd": 0.03})
+    found = numbers(identify(card))
+    assert found["conductance tyre-air"][0] == pytest.approx(500.0 / 50.0, rel=1e-6)
+    assert found["conductance tyre-air"][1] == pytest.approx(10.0 * math.hypot(1.0 / 50.0, 0.03), rel=1e-3)
+    assert found["heat capacity tyre"][0] == pytest.approx(6000.0, rel=1e-6)
+    assert found["heat capacity tyre"][1] == pytest.approx(6000.0 * math.sqrt(0.02**2 + 0.05**2 + 0.03**2), rel=1e-3)
+
+
+def test_the_time_constant_of_two_bodies_is_that_of_the_equations() -> None:
+    """Against time steps of the same two equations."""
+    data = merged(BODY, {"bodies": {"tyre": {"heat_share": 1.0}, "gas": {}}})
+    data["films"] = [{"between": ["tyre", "air"]}, {"between": ["tyre", "gas"]}]
+    card = ThermalCard.check(data)
+    network = LumpedNetwork(card, np.array([6000.0, 300.0]), np.array([8.0, 2.0]), np.zeros(2), np.array([1.0, 0.0]))
+    run = card.runs[0]
+    K, f = network.system(run, run.speed, run.heat)
+    temperatures, step = np.full(2, 20.0), 0.05
+    left = np.linalg.inv(np.diag([6000.0, 300.0]) / step + 0.5 * K)
+    right = np.diag([6000.0, 300.0]) / step - 0.5 * K
+    end, times = network.plateau(run), [math.nan, math.nan]
+    for number in range(60_000):
+        temperatures = left @ (right @ temperatures + f)
+        for body in (0, 1):
+            if math.isnan(times[body]) and end[body] - temperatures[body] < (end[body] - 20.0) / math.e:
+                times[body] = (number + 1) * step
+    assert network.warm_up(run) == pytest.approx(times, abs=2 * step)
+    assert end == pytest.approx([82.5, 82.5])
+
+
+def test_the_shipped_card_gives_the_numbers_it_was_made_with() -> None:
+    found = identify(shipped())
+    for name, (value, sd) in numbers(found).items():
+        assert abs(value - TRUE[name]) < sd, name
+        assert sd < 0.2 * value, name
+    assert set(numbers(found)) == set(TRUE)
+    assert found.misfit < 0.1  # rounding only
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        (
+            {"films": [{"between": ["tyre", "air"]}, {"between": ["tyre", "road"]}]},
+            "air and road differ in temperature",
+        ),
+        ({"films": [{"between": ["tyre", "air"], "speed": "linear"}]}, "runs at two or more speeds"),
+        (
+            {
+                "bodies": {"tyre": {"heat_share": 1.0}, "gas": {}},
+                "films": [{"between": ["tyre", "air"]}, {"between": ["tyre", "gas"]}],
+            },
+            "a time of gas",
+        ),
+    ],
+    ids=["two sinks alike", "one speed", "no time of the gas"],
+)
+def test_what_cannot_be_told_is_refused_with_what_is_missing(changes: dict[str, Any], words: str) -> None:
+    data = {**BODY, **changes}
+    # More runs of the same kind do not help.
+    data["runs"] = [*BODY["runs"], BODY["runs"][0] | {"name": "b"}, BODY["runs"][0] | {"name": "c"}]
+    with pytest.raises(InputError, match="do not determine") as error:
+        identify(ThermalCard.check(data))
+    assert words in str(error.value)
+
+
+def test_too_few_numbers_are_refused() -> None:
+    data = merged(BODY, {"runs": {"0": {"warm_up": {}}}})
+    data["films"] = [{"between": ["tyre", "air"]}, {"between": ["tyre", "road"]}]
+    data["runs"][0]["warm_up"] = {}
+    with pytest.raises(InputError, match=r"1 measured numbers cannot determine 2: conductance tyre-air"):
+        identify(ThermalCard.check(data))
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"bodies": {"tyre": {"heat_share": 0.5}}}, "add up to 0.5"),
+        ({"films": [{"between": ["tyre", "roda"]}]}, "did you mean 'road'"),
+        ({"films": [{"between": ["air", "road"]}]}, "must join"),
+        ({"bodies": {"tyre": {"heat_share": 1.0}, "gas": {}}}, "loses its heat nowhere"),
+        ({"bodies": {"rim": {"heat_share": 1.0}}}, "is a surrounding"),
+    ],
+)
+def test_impossible_cards_are_refused(changes: dict[str, Any], words: str) -> None:
+    with pytest.raises(InputError, match=r"films|bodies") as error:
+        ThermalCard.check({**BODY, **changes})
+    assert words in str(error.value)
+
+
+def test_the_command_writes_films_with_standard_deviations(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["thermal-card", str(SHIPPED.parent)]) == 0
+    assert "conductance gas-rim" in capsys.readouterr().out
+    folder = tmp_path / "results/thermal-passenger-thermal"
+    card = read_toml(folder / "thermal-card.toml")
+    assert card["conductance"]["carcass-gas"]["film"].endswith("W/m**2/K")
+    assert card["heat_capacity"]["tread"]["value"].endswith("J/K")
+    assert (folder / "thermal-card.png").read_bytes().startswith(b"\x89PNG")

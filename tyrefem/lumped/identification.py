@@ -1,0 +1,257 @@
+"""Films and heat capacities of a lumped tyre from what was measured, by least squares, with standard deviations."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.brief import Brief
+from tyrefem.errors import InputError
+from tyrefem.lumped.card import ThermalCard
+from tyrefem.lumped.network import LumpedNetwork
+
+Array = NDArray[np.float64]
+#: Smallest singular value over the largest, of relative changes, below which numbers cannot be told apart.
+DETERMINED = 1e-6
+#: Share of a number in such a direction above which it is named.
+NAMED = 0.1
+
+
+@dataclass(frozen=True)
+class LumpedNumber:
+    """An identified number, SI: ``value`` and standard deviation ``sd``.
+
+    ``area``: of its film, m2, if the card has it: value / area is the film coefficient.
+    """
+
+    name: str
+    unit: str
+    value: float
+    sd: float
+    area: float | None = None
+
+    @property
+    def verdict(self) -> str:
+        """``determined`` to a third or better, else ``poorly determined``."""
+        return "determined" if self.sd < self.value / 3 else "poorly determined"
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        row: dict[str, Any] = {"name": self.name, "unit": self.unit, "value": self.value, "sd": self.sd}
+        row["verdict"] = self.verdict
+        if self.area is not None:
+            row |= {"per_area": self.value / self.area, "per_area_sd": self.sd / self.area, "area_m2": self.area}
+        return row
+
+
+@dataclass(frozen=True)
+class _Unknown:
+    """A number that is sought: ``at`` its place in capacities, at_rest, rise or shares."""
+
+    name: str
+    unit: str
+    kind: str
+    at: int
+    start: float
+
+
+@dataclass(frozen=True, eq=False)
+class LumpedIdentification(Brief):
+    """The identified tyre. Made by `identify`.
+
+    Parameters
+    ----------
+    card : what was measured. network : the identified tyre. numbers : with standard deviations.
+    """
+
+    card: ThermalCard
+    network: LumpedNetwork
+    numbers: tuple[LumpedNumber, ...]
+
+    def _facts(self) -> Mapping[str, Any]:
+        return {number.name: f"{number.value:.4g} +- {number.sd:.2g} {number.unit}" for number in self.numbers}
+
+    @cached_property
+    def rows(self) -> list[dict[str, Any]]:
+        """Every measured number beside the computed one: run, body, quantity, unit, measured, computed, sd."""
+        rows = []
+        for label, measured, computed, sd in _data(self.card, self.network):
+            run, quantity, body = label
+            unit = "degC" if quantity == "plateau" else "s"
+            rows.append({"run": run, "body": body, "quantity": quantity, "unit": unit, "measured": measured,
+                         "computed": computed, "sd": sd})  # fmt: skip
+        return rows
+
+    @property
+    def misfit(self) -> float:
+        """Mean square of the residuals over their standard deviations, per degree of freedom: about 1 if all agree."""
+        free = max(len(self.rows) - len(self.numbers), 1)
+        return sum(((row["measured"] - row["computed"]) / row["sd"]) ** 2 for row in self.rows) / free
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        return {
+            "title": self.card.title,
+            "numbers": [number.to_dict() for number in self.numbers],
+            "rows": self.rows,
+            "misfit": self.misfit,
+            "heat_sd": self.card.heat_sd,
+        }
+
+
+def identify(card: ThermalCard) -> LumpedIdentification:
+    """Least squares of plateaus and times over their standard deviations.
+
+    min over p of sum ((y - y(p)) / sd)^2; covariance (J^T J)^-1 with J = (dy/dp)/sd. All conductances and capacities
+    are proportional to the heat, so its relative standard deviation is added to theirs.
+
+    Raises
+    ------
+    InputError : the measurements do not determine the numbers; says which, and what is missing.
+    """
+    from scipy.optimize import least_squares
+
+    unknowns = _unknowns(card)
+    if not unknowns:
+        raise InputError("every number is known: nothing is to be identified", field="films")
+    count = sum(len(run.plateau) + len(run.warm_up) + len(run.cool_down) for run in card.runs)
+    if count < len(unknowns):
+        raise InputError(
+            f"{count} measured numbers cannot determine {len(unknowns)}: {', '.join(item.name for item in unknowns)}; "
+            "add runs, plateaus or times",
+            field="runs",
+        )
+    start = np.array([item.start for item in unknowns])
+
+    def residuals(relative: Array) -> Array:
+        network = _network(card, unknowns, start * relative)
+        return np.array([(computed - measured) / sd for _, measured, computed, sd in _data(card, network)])
+
+    _told_apart(card, unknowns, _jacobian(residuals, np.ones(len(start))))
+    low = np.full(len(start), 1e-6)
+    high = np.array([1.0 / item.start if item.kind == "shares" else np.inf for item in unknowns])
+    fit = least_squares(residuals, np.ones(len(start)), bounds=(low, high), x_scale="jac", xtol=1e-12, ftol=1e-12)
+    values = start * fit.x
+    # Relative to the fit, so that all numbers are alike.
+    jacobian = _jacobian(residuals, fit.x) * fit.x
+    _told_apart(card, unknowns, jacobian)
+    relative_sd = np.sqrt(np.diag(np.linalg.inv(jacobian.T @ jacobian)))
+    numbers = []
+    for item, value, sd in zip(unknowns, values, relative_sd, strict=True):
+        heat = 0.0 if item.kind == "shares" else card.heat_sd
+        area = card.films[item.at].area if item.kind in ("at_rest", "rise") else None
+        numbers.append(LumpedNumber(item.name, item.unit, float(value), float(value * np.hypot(sd, heat)), area))
+    return LumpedIdentification(card, _network(card, unknowns, values), tuple(numbers))
+
+
+def _unknowns(card: ThermalCard) -> list[_Unknown]:
+    """What is sought, with first guesses of the size that the measurements have."""
+    rise = [max(abs(temperature - run.air), 1.0) for run in card.runs for temperature in run.plateau.values()]
+    heat, times = [run.heat for run in card.runs], [300.0]
+    times += [time for run in card.runs for table in (run.warm_up, run.cool_down) for time in table.values()]
+    conductance = float(np.mean(heat) / np.mean(rise))
+    speed = float(np.mean([run.speed for run in card.runs]))
+    unknowns = []
+    for number, film in enumerate(card.films):
+        if film.conductance is None:
+            linear = film.speed == "linear"
+            name = f"conductance {film.name}" + (" at rest" if linear else "")
+            unknowns.append(_Unknown(name, "W/K", "at_rest", number, conductance * (0.5 if linear else 1.0)))
+            if linear:
+                per_speed = 0.5 * conductance / speed
+                unknowns.append(_Unknown(f"conductance {film.name} per speed", "W s/m/K", "rise", number, per_speed))
+    timed = [run for run in card.runs if run.warm_up or run.cool_down]
+    for number, (name, body) in enumerate(card.bodies.items()):
+        if body.heat_capacity is None and timed:
+            capacity = conductance * float(np.median(times)) / len(card.bodies)
+            unknowns.append(_Unknown(f"heat capacity {name}", "J/K", "capacities", number, capacity))
+    if card.identify_shares:
+        heated = [number for number, body in enumerate(card.bodies.values()) if body.heat_share > 0]
+        names = list(card.bodies)
+        for number in heated[:-1]:
+            share = card.bodies[names[number]].heat_share
+            unknowns.append(_Unknown(f"heat share {names[number]}", "1", "shares", number, share))
+    return unknowns
+
+
+def _network(card: ThermalCard, unknowns: list[_Unknown], values: Array) -> LumpedNetwork:
+    bodies = list(card.bodies.values())
+    parts = {
+        "capacities": np.array([body.heat_capacity or 1.0 for body in bodies]),
+        "at_rest": np.array([film.conductance or 0.0 for film in card.films]),
+        "rise": np.zeros(len(card.films)),
+        "shares": np.array([body.heat_share for body in bodies]),
+    }
+    for item, value in zip(unknowns, values, strict=True):
+        parts[item.kind][item.at] = value
+    if card.identify_shares and len(heated := np.flatnonzero(parts["shares"] > 0)):
+        parts["shares"][heated[-1]] = 1.0 - parts["shares"][heated[:-1]].sum()
+    return LumpedNetwork(card, **parts)
+
+
+def _data(card: ThermalCard, network: LumpedNetwork) -> list[tuple[tuple[str, str, str], float, float, float]]:
+    """Label (run, quantity, body), measured, computed, standard deviation."""
+    data, names = [], list(card.bodies)
+    for run in card.runs:
+        for quantity, measured in (("plateau", run.plateau), ("warm_up", run.warm_up), ("cool_down", run.cool_down)):
+            if not measured:
+                continue
+            computed = getattr(network, quantity)(run)
+            for name, value in measured.items():
+                if not np.isfinite(computed[names.index(name)]):
+                    raise InputError(
+                        "has no way to go: it starts at its plateau", field=f"runs.{run.name}.{quantity}.{name}"
+                    )
+                sd = card.temperature_sd if quantity == "plateau" else card.time_sd * value
+                data.append(((run.name, quantity, name), value, float(computed[names.index(name)]), sd))
+    return data
+
+
+def _jacobian(residuals: Any, at: Array) -> Array:
+    """Central differences, d residuals / d parameters."""
+    columns = []
+    for number in range(len(at)):
+        step = np.zeros(len(at))
+        step[number] = 1e-5 * at[number]
+        columns.append((residuals(at + step) - residuals(at - step)) / (2 * step[number]))
+    return np.column_stack(columns)
+
+
+def _told_apart(card: ThermalCard, unknowns: list[_Unknown], jacobian: Array) -> None:
+    """Refuse numbers whose changes cannot be seen, alone or together; name them and what is missing."""
+    _, sizes, directions = np.linalg.svd(jacobian, full_matrices=True)
+    sizes = np.concatenate([sizes, np.zeros(len(unknowns) - len(sizes))])
+    if sizes[-1] > DETERMINED * sizes[0]:
+        return
+    among = [item for item, share in zip(unknowns, np.abs(directions[-1]), strict=True) if share > NAMED]
+    names = ", ".join(item.name for item in among)
+    raise InputError(f"the measurements do not determine {names}: {_missing(card, among)}", field="runs")
+
+
+def _missing(card: ThermalCard, among: list[_Unknown]) -> str:
+    """What would determine numbers."""
+    wanted = []
+    kinds = {item.kind for item in among}
+    ends = [set(card.films[item.at].between) for item in among if item.kind in ("at_rest", "rise")]
+    sinks = {name for pair in ends for name in pair if name in ("air", "road", "rim")}
+    if "rise" in kinds and len({run.speed for run in card.runs}) < 2:
+        wanted.append("runs at two or more speeds")
+    if len(sinks) > 1 and all(len({run.surroundings(name) for name in sinks}) == 1 for run in card.runs):
+        wanted.append(f"a run in which {' and '.join(sorted(sinks))} differ in temperature")
+    bodies = list(card.bodies)
+    timed = {name for run in card.runs for name in (*run.warm_up, *run.cool_down)}
+    without = [bodies[item.at] for item in among if item.kind == "capacities" and bodies[item.at] not in timed]
+    if without:
+        wanted.append(f"a time of {', '.join(without)}, or its heat capacity")
+    seen = {name for run in card.runs for name in run.plateau}
+    unseen = sorted({name for pair in ends for name in pair if name in bodies and name not in seen})
+    if unseen:
+        wanted.append(f"a plateau of {', '.join(unseen)}")
+    if "shares" in kinds and not wanted:
+        wanted.append("a known heat share, or a known conductance")
+    return "; ".join(wanted) or "a run with another heat, speed or surroundings, or one of these numbers as known"
