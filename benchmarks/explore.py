@@ -5,7 +5,8 @@
 Without a page the 22x5.5 8PR with its default box is explored first, on a mesh of about 10,000 nodes (--quick: few
 numbers, 1,000 nodes). A frame is the march of the drive, the limits, the field at all nodes, the section with isotherms
 and labels, and the numbers beside it; charts follow in a later task. The canvas is read back, so that it is drawn.
-Prints a table and, as its last line, one JSON object; the goal is 33 ms.
+Prints a table and, as its last line, one JSON object. The goal is 33 ms; it is judged by the browser's processor time,
+as other work on the machine stretches the clock.
 """
 
 from __future__ import annotations
@@ -47,8 +48,17 @@ for (let k = 0; k < %d; k++) {
   times.push(performance.now() - began);
   await frame();
 }
+/* The same frames once more, for the processor time of all of the browser's processes. */
+const before = await processorTime();
+for (let k = 0; k < %d; k++) {
+  const share = (i) => (k * 0.41 + i * 0.53) %% 1;
+  E.state.numbers = E.data.numbers.map((number, i) => number.low + (number.high - number.low) * share(i));
+  E.update();
+  flush();
+}
+const processor = (await processorTime() - before) / %d;
 return {
-  solves, frames, whole, times, nodes: E.modes.count, modes: E.tyre.size, steps: E.tyre.times.length - 1,
+  processor, solves, frames, whole, times, nodes: E.modes.count, modes: E.tyre.size, steps: E.tyre.times.length - 1,
   pixels: E.section.place.length, numbers: E.data.numbers.length,
 };
 """
@@ -74,7 +84,7 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         page = options.page or made(options.quick, Path(folder))
         text = page.read_text(encoding="utf-8")
-        measured = result_in_browser(text, _SCRIPT % SETTINGS, (1440, 1000))
+        measured = result_in_browser(text, _SCRIPT % (SETTINGS, SETTINGS, SETTINGS), (1440, 1000))
     load = os.getloadavg()[0] / (os.cpu_count() or 1)
     print(
         f"{measured['nodes']} nodes, {measured['modes']} modes, {measured['steps']} steps, {measured['numbers']} "
@@ -90,12 +100,14 @@ def main() -> None:
     for name, key in rows.items():
         values = measured[key]
         print(f"{name:34} {min(values):5.1f}  {part(values, 0.5):5.1f}  {part(values, 0.9):5.1f}")
+    print(f"processor time of a frame, all processes of the browser: {measured['processor']:.1f} ms (goal {GOAL:g})")
     frames = measured["frames"]
     answer = {
         "nodes": measured["nodes"],
         "frame_ms": {"best": min(frames), "median": part(frames, 0.5), "p90": part(frames, 0.9)},
+        "processor_ms": measured["processor"],
         "goal_ms": GOAL,
-        "met": part(frames, 0.5) <= GOAL,
+        "met": measured["processor"] <= GOAL,
         "page_MB": len(text) / 1e6,
         "load_per_core": load,
     }

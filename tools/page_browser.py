@@ -8,6 +8,7 @@ import shutil
 import subprocess
 import tempfile
 import threading
+from contextlib import suppress
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from queue import Empty, Queue
 from typing import Any
@@ -26,6 +27,7 @@ _SCRIPT = """
 <script>
 (async () => {
   const wait = (ms) => new Promise((done) => setTimeout(done, ms));
+  const processorTime = async () => (await fetch("/processor-time", { method: "POST", body: "{}" })).json();
   const frame = () => new Promise((done) => requestAnimationFrame(done));
   let result;
   try { result = await (async () => { %s })(); } catch (error) { result = { failed: String(error.stack) }; }
@@ -36,7 +38,9 @@ _SCRIPT = """
 
 
 def result_in_browser(page: str, script: str, size: tuple[int, int] = (1400, 1000)) -> Any:
-    """What a script, the body of an async function, returns in the page; it may ``await wait(ms)`` and ``frame()``."""
+    """What a script, the body of an async function, returns in the page; it may ``await wait(ms)``, ``frame()``
+    and ``processorTime()``, ms of the browser.
+    """
     content = page.replace("</body>", _SCRIPT.replace("%s", script) + "</body>").encode()
     results: Queue[Any] = Queue()
 
@@ -45,7 +49,11 @@ def result_in_browser(page: str, script: str, size: tuple[int, int] = (1400, 100
             self._answer(content if self.path == "/" else b"")
 
         def do_POST(self) -> None:
-            results.put(json.loads(self.rfile.read(int(self.headers["Content-Length"]))))
+            sent = json.loads(self.rfile.read(int(self.headers["Content-Length"])))
+            if self.path == "/processor-time":
+                self._answer(json.dumps(processor_time(browser.pid)).encode())
+                return
+            results.put(sent)
             self._answer(b"")
 
         def _answer(self, body: bytes) -> None:
@@ -76,6 +84,18 @@ def result_in_browser(page: str, script: str, size: tuple[int, int] = (1400, 100
         shutil.rmtree(profile, ignore_errors=True)
     assert not (isinstance(result, dict) and "failed" in result), result["failed"]
     return result
+
+
+def processor_time(pid: int) -> float:
+    """Processor time of a process and all its children, ms."""
+    import psutil
+
+    total = 0.0
+    for process in (psutil.Process(pid), *psutil.Process(pid).children(recursive=True)):
+        with suppress(psutil.Error):
+            times = process.cpu_times()
+            total += 1e3 * (times.user + times.system)
+    return total
 
 
 def within_frame(page: str, width: int, height: int) -> str:

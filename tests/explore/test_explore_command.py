@@ -57,3 +57,17 @@ def test_a_foreign_file_stays(small: Study, tmp_path: Path, capsys: pytest.Captu
     assert main(["explore", str(small.file), *RANGES, "--out", str(mine)]) == 2
     assert "--force" in capsys.readouterr().err
     assert mine.read_text() == "<p>mine</p>"
+
+
+def test_reports_link_to_the_page_or_name_the_command(small: Study, tmp_path: Path) -> None:
+    report = tmp_path / small.name / "report.html"
+    short = small.replace({"drive": {"speed": "20 mph", "load": "10 kN", "pressure": "80 psi", "duration": "5 s"}})
+    result = short.run()
+    result.report(report)
+    assert f"<code>tyrefem explore {small.file}</code>" in report.read_text(encoding="utf-8")
+    (tmp_path / f"{small.name}-explore.html").write_text("")
+    result.report(report)
+    assert f'<a href="../{small.name}-explore.html">' in report.read_text(encoding="utf-8")
+    design = short.sweep({"drive.speed": ["10 mph", "20 mph"]}, answers=["hottest_degC"])
+    page = design.save(tmp_path / f"{small.name}-sweep") / "sweep.html"
+    assert f'<a href="../{small.name}-explore.html">' in page.read_text(encoding="utf-8")

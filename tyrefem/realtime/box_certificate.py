@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
 from tyrefem.realtime.box_runs import FullHistory
-from tyrefem.realtime.setting_tyre import Solution
+from tyrefem.realtime.setting_solution import Solution
 from tyrefem.reduced.model import ReducedModel
 
 Array = NDArray[np.float64]

@@ -19,7 +19,8 @@ from tyrefem.realtime.default_box import default_box
 from tyrefem.realtime.drive_inputs import DriveInputs, drive_inputs
 from tyrefem.realtime.number_factors import PartsProbe, number_factors, product_errors
 from tyrefem.realtime.setting_arrays import rounded, setting_arrays, step_arrays
-from tyrefem.realtime.setting_tyre import SettingTyre, Solution
+from tyrefem.realtime.setting_solution import Solution
+from tyrefem.realtime.setting_tyre import SettingTyre
 from tyrefem.realtime.settings import TablePoints
 from tyrefem.realtime.tables import Probe
 from tyrefem.realtime.tyre import STANDSTILL

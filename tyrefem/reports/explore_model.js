@@ -503,16 +503,19 @@ class Solution {
 
   /* End of the rolling phase with most heat: there the rolling resistance is stated. */
   rollingTime() {
-    let best = 0, time = 0;
-    const n = this.tyre.count;
-    for (let number = 0; number < this.first.length; number++) {
+    let best = -1, time = 0;
+    const n = this.tyre.count, c = this.coefficients, durations = this.tyre.arrays.durations;
+    const numbers = this.first.map((_, number) => number).filter((number) => {
+      const end = c.inputsAt(number, durations[number]);
+      return end[0] >= STANDSTILL && end[1] > 0;
+    });
+    for (const number of numbers) {
       const low = this.first[number], high = number + 1 < this.first.length ? this.first[number + 1] : this.times.length - 1;
-      const end = this.coefficients.inputsAt(number, this.tyre.arrays.durations[number]);
-      if (end[0] < STANDSTILL || end[1] <= 0) continue;
+      if (numbers.length === 1) return this.times[high];
       let heat = 0, before = 0;
       for (let i = low; i <= high; i++) {
-        const inputs = this.coefficients.inputsAt(number, this.times[i] - this.times[low]);
-        const power = this.coefficients.generated(this.states.subarray(i * n, i * n + n), inputs).reduce((a, b) => a + b, 0);
+        const inputs = c.inputsAt(number, this.times[i] - this.times[low]);
+        const power = c.generated(this.states.subarray(i * n, i * n + n), inputs).reduce((a, b) => a + b, 0);
         if (i > low) heat += (power + before) / 2 * (this.times[i] - this.times[i - 1]);
         before = power;
       }

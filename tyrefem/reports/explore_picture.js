@@ -67,10 +67,10 @@ class SectionPicture {
     const plain = this.small || width < 560, bar = this.small ? 6 : plain ? 44 : 52;
     this.context.font = "11.5px system-ui, sans-serif";
     const widest = (names) => Math.max(0, ...names.map((name) => this.context.measureText(name).width));
-    const left = plain ? 8 : 20 + widest(this.regions.map((region) => region.name)), right = plain ? 8 : 54 + widest(this.sensors.map((sensor) => sensor.name));
+    const left = plain ? 8 : 20 + widest(this.regions.map((region) => region.name)), right = plain ? 8 : 62 + widest(this.sensors.map((sensor) => sensor.name));
     this.margins = { left, right: right + bar, top: 10, bottom: this.small ? 6 : 10 };
     const across = r.right - r.left, up = r.high - r.low;
-    const most = this.small ? 320 : plain ? Math.max(170, Math.min(0.36 * window.innerHeight, 300)) : Math.max(420, Math.min(640, 0.72 * window.innerHeight));
+    const most = this.small ? 320 : plain ? Math.max(170, Math.min(0.31 * window.innerHeight, 290)) : Math.max(420, Math.min(640, 0.72 * window.innerHeight));
     this.scale = Math.min((width - this.margins.left - this.margins.right) / across, (most - this.margins.top - this.margins.bottom) / up);
     const height = Math.round(up * this.scale + this.margins.top + this.margins.bottom);
     this.width = width;
@@ -318,7 +318,7 @@ class SectionPicture {
         c.font = "11.5px system-ui, sans-serif";
         c.fillStyle = this.ink(true);
         const value = readings[label.name];
-        c.fillText(label.name.replaceAll("-", " "), edge + 33, label.at);
+        c.fillText(label.name.replaceAll("-", " "), edge + 40, label.at);
         c.font = "600 11.5px system-ui, sans-serif";
         c.fillStyle = this.ink(false);
         if (value !== undefined) c.fillText(value.toFixed(1), edge + 1, label.at);

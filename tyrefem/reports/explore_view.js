@@ -547,7 +547,8 @@ function drawPins() {
   add("hottest at that time", ...both("hottest"), 1, "°C");
   add("highest of the drive", ...both("hottest_degC"), 1, "°C");
   for (const { name } of lines) add(short(name), ...both(name), 1, "°C");
-  add("rolling resistance", ...both("rolling_resistance"), 1, "N");
+  add("rolling resistance of the drive", ...both("rolling_resistance_N"), 1, "N");
+  add("its coefficient", ...both("rolling_resistance_coefficient"), 5, "");
   add("contained air’s pressure", ...both("gas_pressure", DATA.pressure.pascal), 1, DATA.pressure.unit);
   for (const name of [...tyre.about.heat, ...tyre.about.lost, "stored"]) add(short(name), ...both(name), 1, "W");
 }

@@ -14,6 +14,7 @@ import numpy as np
 from tyrefem.geometry.place_names import place
 from tyrefem.inputs.study_plugins import plugins_of
 from tyrefem.output import atomic_path, versions
+from tyrefem.reports.explore_link import ExploreLink, explore_link
 from tyrefem.reports.inputs import (
     assumptions,
     boundary_rows,
@@ -324,13 +325,13 @@ def write_report(result: ResultData, path: Path, *, three_d: bool = False) -> Pa
     InputError : the file cannot be written.
     """
     path = Path(path)
-    page = render(result, three_d=three_d)
+    page = render(result, explore_link(result.study, path), three_d=three_d)
     with atomic_path(path) as temporary:
         temporary.write_text(page, encoding="utf-8")
     return path
 
 
-def render(result: ResultData, *, three_d: bool = False) -> str:
+def render(result: ResultData, explored: ExploreLink | None = None, *, three_d: bool = False) -> str:
     """The report's HTML."""
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
@@ -348,7 +349,7 @@ def render(result: ResultData, *, three_d: bool = False) -> str:
         loader=PackageLoader("tyrefem.reports", "."), autoescape=True, undefined=StrictUndefined, trim_blocks=True,
         lstrip_blocks=True,
     )  # fmt: skip
-    return environment.get_template("run.html.j2").render(pictures=embedded, **content(result))
+    return environment.get_template("run.html.j2").render(pictures=embedded, explored=explored, **content(result))
 
 
 def _three_d(result: ResultData) -> bytes | None:

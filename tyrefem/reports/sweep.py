@@ -18,6 +18,7 @@ from tyrefem.output.folder import BOOKKEEPING
 
 # Registers the pictures of tornado, indices, optimum and envelope.
 from tyrefem.reports import sweep_answer_figures as sweep_answer_figures
+from tyrefem.reports.explore_link import explore_link
 from tyrefem.reports.figures.style import png
 from tyrefem.reports.sweep_figures import figures
 from tyrefem.sweep.sweep import Sweep
@@ -65,6 +66,7 @@ def write_page(design: DesignData, summary: Mapping[str, Any], folder: Path) -> 
         failed=design.failed,
         assumed=_assumed(design),
         versions=summary["versions"],
+        explored=explore_link(design.study, folder / PAGE),
     )
     with atomic_path(folder / PAGE) as temporary:
         temporary.write_text(page, encoding="utf-8")
