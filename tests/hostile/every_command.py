@@ -43,8 +43,8 @@ MORE = {
 #: Words of commands whose arguments are a kind and a name.
 KINDS = {"show": ["section", "nasa-22x5.5-8pr"], "new": ["study", "another"]}
 #: Suffixes of commands whose ``--out`` is one file.
-SUFFIXES = {"show": ".png", "new": ".toml", "export": ".npz", "road averaging": ".png", "slide tables": ".png",
-            "slide locked-wheel": ".png"}  # fmt: skip
+SUFFIXES = {"show": ".png", "new": ".toml", "export": ".npz", "explore": ".html", "road averaging": ".png",
+            "slide tables": ".png", "slide locked-wheel": ".png"}  # fmt: skip
 
 
 @dataclass(frozen=True)

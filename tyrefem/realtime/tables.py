@@ -127,7 +127,8 @@ class Probe:
         least = 0.0 if len(speeds) == 1 and speeds[0] == 0 else 1e-9
         shares = np.clip(speeds / top, least, 1 - 1e-9)
         films = np.array([[balance.coefficients(k + share)[0] for share in shares] for k in range(len(first))])
-        if not np.allclose(films[0], films[-1], rtol=1e-6):
+        # Hardly rolling, times in late parts of the drive are rounded: small films count by the largest.
+        if not np.allclose(films[0], films[-1], rtol=1e-6, atol=1e-6 * float(np.abs(films[0]).max())):
             raise InputError("films change with time; in a real-time model only the inputs may", field="effects")
         return films[:-1], np.array([_per_metre(balance.tyre, k + 0.5) for k in range(len(pairs))])
 
