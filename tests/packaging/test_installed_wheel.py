@@ -84,11 +84,29 @@ def test_wheel_holds_nothing_else(built: dict[str, Path]) -> None:
     assert not [line for line in required if "gmsh" in line]
 
 
+def test_twine_finds_nothing_wrong(built: dict[str, Path], tmp_path: Path) -> None:
+    said = run(sys.executable, "-m", "twine", "check", "--strict", built["wheel"], built["sdist"], cwd=tmp_path).stdout
+    assert said.count("PASSED") == 2
+
+
+def test_wheel_and_archive_have_the_version_of_the_package(built: dict[str, Path]) -> None:
+    assert built["wheel"].name.split("-")[1] == tf.__version__
+    assert built["sdist"].name == f"tyrefem-{tf.__version__}.tar.gz"
+
+
 def test_source_archive_can_be_tested(built: dict[str, Path]) -> None:
     with tarfile.open(built["sdist"]) as archive:
         names = {name.split("/", 1)[-1] for name in archive.getnames()}
     here = Path(__file__).relative_to(CHECKOUT).as_posix()
-    assert {here, "pyproject.toml", "LICENSE", "README.md", "CHANGELOG.md", "docs/dependencies.md"} <= names
+    assert {
+        here,
+        "pyproject.toml",
+        "LICENSE",
+        "README.md",
+        "CHANGELOG.md",
+        "CITATION.cff",
+        "docs/dependencies.md",
+    } <= names
 
 
 def test_installed_program_gives_the_checkout_numbers(installed: Path, tmp_path: Path) -> None:
