@@ -11,15 +11,19 @@ from scipy.linalg import block_diag
 
 from tyrefem.brief import Brief
 from tyrefem.diagnose.energy_shapes import SHAPE
+from tyrefem.diagnose.gauges import FILM_LAWS
 from tyrefem.diagnose.residuals import Residuals
 from tyrefem.diagnose.sampling import SensorSampling
 from tyrefem.diagnose.shared_error import SharedError
 from tyrefem.diagnose.unknowns import Unknown
+from tyrefem.inputs.name_patterns import SCALES
 
 Array = NDArray[np.float64]
 NONE, ENERGY, HEAT, READINGS = "none", "strain energy", "missing heat", "correlated readings"
 #: Name of a discrepancy by another strain law: this and the law's name.
 LAW = "strain law "
+#: What else may differ beside the strain energy, in words.
+FURTHER = ", other gauges and other speed laws of films"
 #: Components of a correlated discrepancy with less than this share of the largest one's variance are left out.
 SMALLEST = 1e-3
 
@@ -35,6 +39,8 @@ class Discrepancy(Brief):
     shared_error : error that readings share; None: none.
     offset : by run (n_blocks,) K, added to the computed temperatures; empty: none.
     width : factor on the prior standard deviations of ``nuisance``, or of missing heat.
+    further : speed laws of films and gauges of the section that may differ, too: the first columns of ``shared_error``,
+        over their prior standard deviations.
     """
 
     name: str
@@ -43,6 +49,7 @@ class Discrepancy(Brief):
     nuisance: tuple[Unknown, ...] = ()
     offset: tuple[Array, ...] = ()
     width: float = 1.0
+    further: tuple[Unknown, ...] = ()
 
     def _title(self) -> str:
         return f"{self.name}, {self.size:g} K"
@@ -54,7 +61,7 @@ class Discrepancy(Brief):
             return f"the {self.name}"
         words = {
             NONE: "the model as it is",
-            ENERGY: "another strain energy along the meridian",
+            ENERGY: f"another strain energy along the meridian{FURTHER if self.further else ''}",
             HEAT: "heat of unknown origin",
             READINGS: "errors of the readings",
         }[self.name]
@@ -85,29 +92,41 @@ def discrepancies(residuals: Residuals) -> Iterator[Discrepancy]:
     """The discrepancy models beside which sets of effects are ranked again.
 
     - strain energy: half waves along the meridian, the same in all runs, fitted with the full model; and a smaller
-      part for each run, linear. Priors several times as wide follow a strain energy that is wrong by a factor;
+      part for each run, linear. If that is not enough, gauges of the section and speed laws of films differ, too,
+      linear. Priors several times as wide follow a strain energy that is wrong by a factor;
     - missing heat: patches of heat and flux, a part that all runs share and a part for each run, linear; in several
       sizes, because a cause outside the catalogue may heat ten times as much as expected;
     - correlated readings: a course over time for each sensor and run.
     """
-    further = residuals.unknowns[residuals.nuisance :]
-    energy = tuple(unknown for unknown in further if unknown.effect == SHAPE)
+    others = residuals.unknowns[residuals.nuisance :]
+    energy = tuple(unknown for unknown in others if unknown.effect == SHAPE)
     if energy:
         of_runs = _of_runs(residuals, energy, residuals.settings.energy_of_run)
         widths = (1.0, *residuals.settings.energy_widths)
-        sizes = ((0.0, width) for width in widths)
-        errors = (
+        further = films_and_gauges(residuals)
+        errors = [
             (size, width) for size in residuals.settings.discrepancy_sizes[:2] for width in (widths[0], widths[-1])
-        )
-        for size, width in (*sizes, *errors):
+        ]
+        alone = ((0.0, width) for width in (widths if further else widths[1:]))
+        for size, width, more in ((0.0, 1.0, ()), *((*each, further) for each in (*alone, *errors))):
             shapes = tuple(replace(unknown, sd=width * unknown.sd) for unknown in energy)
-            shared = _shared(residuals, [of_runs, *_courses(residuals, size)])
-            yield Discrepancy(ENERGY, size, shared, shapes, width=width)
+            parts = [_of_all(residuals, more, 1.0), of_runs, *_courses(residuals, size)]
+            yield Discrepancy(ENERGY, size, _shared(residuals, parts), shapes, width=width, further=more)
     if missing_patches(residuals):
         for width in residuals.settings.heat_widths:
             yield missing_heat_beside(residuals, (), width)
     for size in residuals.settings.discrepancy_sizes:
         yield Discrepancy(READINGS, size, _shared(residuals, _courses(residuals, size)))
+
+
+def films_and_gauges(residuals: Residuals) -> tuple[Unknown, ...]:
+    """Speed laws of films and gauges among the unknowns of the residuals, in all runs."""
+    further = residuals.unknowns[residuals.nuisance :]
+    return tuple(
+        unknown
+        for unknown in further
+        if (unknown.effect in FILM_LAWS and not unknown.runs) or unknown.key.startswith(SCALES)
+    )
 
 
 def missing_patches(residuals: Residuals) -> tuple[Unknown, ...]:

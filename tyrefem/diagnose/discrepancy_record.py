@@ -49,14 +49,15 @@ def support_row(d: DiagnosisData, member: Candidate) -> dict[str, Any] | None:
 
 
 def possible_effects(d: DiagnosisData) -> dict[str, float]:
-    """Candidate key -> probability beside the discrepancy that explains the data, if the verdict is "unexplained".
+    """Candidate key -> probability beside the discrepancy that explains the data: "unexplained", "partly identified".
 
-    Effects below `POSSIBLE` are left out, and all if noise explains no set's misfit beside it.
+    Effects that are named or below `POSSIBLE` are left out, and all if noise explains no set's misfit beside it.
     """
     leading = d.robustness.models[0] if d.robustness is not None else None
-    if d.verdict != UNEXPLAINED or leading is None or leading.refuted or not leading.fits:
+    if d.verdict not in (UNEXPLAINED, PARTLY) or leading is None or leading.refuted or not leading.fits:
         return {}
-    return {key: share for key, share in leading.named.items() if share >= POSSIBLE}
+    named = {member.key for member in d.best.members} if d.verdict == PARTLY else set()
+    return {key: share for key, share in leading.named.items() if share >= POSSIBLE and key not in named}
 
 
 def discrepancy_rows(d: DiagnosisData) -> list[dict[str, Any]]:

@@ -8,10 +8,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+from scipy.special import expit
 
 from tyrefem.brief import Brief
 from tyrefem.diagnose.candidates import Candidate, Members, separate
-from tyrefem.diagnose.discrepancy import HEAT, NONE, READINGS, Discrepancy, beside_law, discrepancies
+from tyrefem.diagnose.discrepancy import ENERGY, HEAT, NONE, READINGS, Discrepancy, beside_law, discrepancies
 from tyrefem.diagnose.fits import FittedSet, continued, first_fits, fitted_beside, linear_about, state_beside
 from tyrefem.diagnose.gauss_newton import FitState, initial_state
 from tyrefem.diagnose.residuals import Residuals
@@ -54,6 +55,12 @@ class RankedBeside(Brief):
         return self._here or self._at_origin
 
     @functools.cached_property
+    def candidates(self) -> Members:
+        """The effects that compete: those that the discrepancy does not allow for by itself."""
+        further = set(self.discrepancy.further)
+        return tuple(each for each in self.problem.candidates if not further & set(each.unknowns))
+
+    @functools.cached_property
     def _at_origin(self) -> Residuals:
         of = self.discrepancy
         return self.problem.residuals.beside(of.nuisance, of.shared_error, of.offset)
@@ -92,6 +99,7 @@ class RankedBeside(Brief):
         estimates = {
             members: problem.prior(members) + evidence(state_beside(residuals, fit), residuals.log_det)
             for members, fit in fits.items()
+            if set(members) <= set(self.candidates)
         }
         # Without the discrepancy, the fit of no effect may have distorted base numbers.
         linear = residuals.linear(residuals.fitted)
@@ -126,7 +134,7 @@ class RankedBeside(Brief):
         self._take(
             continued(self.residuals, problem.predictions, [self.fits[part] for part in leading], problem._count)
         )
-        unknowns = [unknown for each in problem.candidates for unknown in (*each.amplitudes, *each.presence)]
+        unknowns = [unknown for each in self.candidates for unknown in (*each.amplitudes, *each.presence)]
         point = problem.ordered(self.best.members), tuple(unknowns), self.best.state.current_values
         numbers = self.residuals.fitted
         (columns,) = problem.predictions.jacobians([point], numbers, problem._count)
@@ -184,7 +192,7 @@ class RankedBeside(Brief):
 
     def _extend(self, members: Members, fit: FittedSet) -> None:
         problem = self.problem
-        others = [each for each in problem.candidates if separate(each, members)]
+        others = [each for each in self.candidates if separate(each, members)]
         unknowns = [unknown for each in others for unknown in (*each.amplitudes, *each.presence)]
         about = linear_about(self.residuals, fit, unknowns)
         of_part = about.log_evidence(())
@@ -197,6 +205,25 @@ class RankedBeside(Brief):
         members = self.problem.ordered(members)
         if members not in self.fits:
             self.estimates[members] = max(value, self.estimates.get(members, -math.inf))
+
+    def further_named(self) -> dict[str, float]:
+        """Candidate key -> probability of effects that the discrepancy allows for by itself, at the best fit.
+
+        The odds that such an effect acts are its prior odds times the prior density over the posterior density of its
+        amplitude at zero (Dickey 1971).
+        """
+        of, fit = self.discrepancy, self.best
+        shared = of.shared_error
+        effects = {each.amplitudes[0]: each for each in self.problem.candidates if len(each.amplitudes) == 1}
+        if shared is None or not any(unknown in effects for unknown in of.further):
+            return {}
+        mean, sd = shared.coefficients(fit.state.r, fit.state.J, fit.state.posterior.covariance)
+        named = {}
+        for unknown, c, s in zip(of.further, mean, sd, strict=False):
+            if (candidate := effects.get(unknown)) is not None:
+                odds = self.problem.prior((candidate,)) - self.problem.prior(())
+                named[candidate.key] = float(expit(odds + math.log(max(s, 1e-9)) + (c / max(s, 1e-9)) ** 2 / 2))
+        return named
 
     def scored(self) -> list[ScoredSet]:
         """All sets, best first; estimates stay below the best fit."""
@@ -242,9 +269,10 @@ def robustness(
     Parameters
     ----------
     scored : the sets without a discrepancy. certain : True: improbable models get no further fits.
-    explained : False: no set explains the data, so the models matter only for effects that act beside all of them. Only
-        sets that can change their probabilities are fitted. As soon as there is no such effect, the other models get
-        two fits: no effect, and the leading set.
+    explained : False: no set explains the data, so the models matter for effects that act beside all that the data do
+        not exclude. Another strain energy is tried first, in full: of the models it is the likeliest to be wrong. The
+        others begin with two fits, no effect and the leading set, and go on if the data do not exclude them: then only
+        with sets that can change the probabilities of effects that act beside the models before.
     """
     settings = problem.settings
     fits = {problem.ordered(entry.members): entry.fit for entry in scored if entry.fit is not None}
@@ -256,37 +284,37 @@ def robustness(
         ),
         key=lambda entry: -entry.score,
     )
-    finished = [under(Discrepancy(NONE, 0.0), problem.residuals, alone)]
     ranked: dict[str, list[RankedBeside]] = {}
-    for name, sizes in _by_cost(problem, fits).items():
-        left = () if explained else Robustness(tuple(finished)).open(settings.named_probability)
-        full = explained or bool(left)
+    for name, sizes in _by_cost(problem, fits, explained=explained).items():
+        in_full = explained or name == ENERGY
+        before = () if in_full else _so_far(problem, alone, ranked).open(settings.named_probability)
         for discrepancy in sizes:
             known = ranked.get(name, [])
             if known and name != HEAT and not _further(known[0], discrepancy):
                 continue
-            beside = RankedBeside(problem, discrepancy, left)
-            beside.begin(fits, None if full else 1)
+            beside = RankedBeside(problem, discrepancy, before)
+            beside.begin(fits, None if in_full else 1)
             if not known or name == HEAT:
                 ranked[name] = [*known, beside]
             elif _total(beside.scored()) > _total(known[0].scored()):
                 ranked[name] = [beside]
-        if not explained:
-            for beside in ranked[name] if full else ():
-                beside.further()
-            finished.append(under(*averaged(ranked[name])))
+        if explained:
+            continue
+        counts = bool(before) and name in {model.name for model in _so_far(problem, alone, ranked).counted}
+        for beside in ranked[name] if in_full or counts else ():
+            if not in_full:
+                beside.begin(fits)
+            beside.further()
     share = (1 - settings.right_model) / max(len(ranked), 1)
 
     def result() -> Robustness:
-        sets = [(Discrepancy(NONE, 0.0), problem.residuals, settings.right_model, alone)]
-        for sizes in ranked.values():
-            discrepancy, residuals, rows = averaged(sizes)
-            sets.append((discrepancy, residuals, share, rows))
-        scores = [math.log(prior) + _total(rows) for _, _, prior, rows in sets]
-        probabilities = shares(scores)
+        models = [under(Discrepancy(NONE, 0.0), problem.residuals, alone), *map(_under, ranked.values())]
+        scores = [
+            math.log(settings.right_model) + _total(alone),
+            *(math.log(share) + _score(sizes) for sizes in ranked.values()),
+        ]
         models = [
-            replace(under(discrepancy, residuals, rows), probability=probability)
-            for (discrepancy, residuals, _, rows), probability in zip(sets, probabilities, strict=True)
+            replace(model, probability=probability) for model, probability in zip(models, shares(scores), strict=True)
         ]
         ordered = tuple(sorted(models, key=lambda model: -model.probability))
         return Robustness(ordered, log_evidence=float(np.logaddexp.reduce(scores)))
@@ -301,8 +329,33 @@ def robustness(
     return result() if unfinished else first
 
 
+def _score(sizes: Sequence[RankedBeside]) -> float:
+    """ln evidence of a discrepancy of several sizes, over all sets with their priors."""
+    _, _, rows = averaged(sizes)
+    return _total(rows)
+
+
+def _under(sizes: Sequence[RankedBeside]) -> UnderDiscrepancy:
+    """The sets beside a discrepancy of several sizes, and the effects that it allows for by itself."""
+    model = under(*averaged(sizes))
+    further = next(each for each in sizes if each.discrepancy.size == model.size).further_named()
+    named = sorted({**model.named, **further}.items(), key=lambda item: -item[1])
+    return replace(model, named=dict(named))
+
+
+def _so_far(
+    problem: SelectionProblem, alone: Sequence[ScoredSet], ranked: Mapping[str, Sequence[RankedBeside]]
+) -> Robustness:
+    """The models so far, equally probable before the data; ``alone``: the sets without one."""
+    scores = [_total(alone), *map(_score, ranked.values())]
+    models = [under(Discrepancy(NONE, 0.0), problem.residuals, alone), *map(_under, ranked.values())]
+    likely = (replace(model, probability=share) for model, share in zip(models, shares(scores), strict=True))
+    return Robustness(tuple(sorted(likely, key=lambda model: -model.probability)))
+
+
 def _further(known: RankedBeside, discrepancy: Discrepancy) -> bool:
-    """Whether to try a discrepancy beside the best one of its name: a wider one, or one with errors of the readings."""
+    """Whether to try a discrepancy beside the best one of its name: with more that differs, or with errors of the
+    readings."""
     same_width = discrepancy.width == known.discrepancy.width
     if known.p_value > USUAL_P:
         return known.strained and not same_width and discrepancy.size == known.discrepancy.size
@@ -344,12 +397,14 @@ def fit_beside(problem: SelectionProblem, model: UnderDiscrepancy, fit: FittedSe
     return beside
 
 
-def _by_cost(problem: SelectionProblem, fits: Mapping[Members, FittedSet]) -> dict[str, list[Discrepancy]]:
-    """The models by name with their sizes, those without further unknowns first.
+def _by_cost(
+    problem: SelectionProblem, fits: Mapping[Members, FittedSet], *, explained: bool
+) -> dict[str, list[Discrepancy]]:
+    """The models by name with their sizes, those without further unknowns first, or last if no set explains the data.
 
     Of correlated readings there is only the size that explains the fits best; of missing heat those that come near it.
     """
-    every = sorted(discrepancies(problem.residuals), key=lambda discrepancy: bool(discrepancy.nuisance))
+    every = sorted(discrepancies(problem.residuals), key=lambda each: bool(each.nuisance) == explained)
     models: dict[str, list[Discrepancy]] = {}
     for each in every:
         models.setdefault(each.name, []).append(each)

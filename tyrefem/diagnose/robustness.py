@@ -15,6 +15,9 @@ from tyrefem.diagnose.unknowns import Unknown
 
 #: Amounts of an effect beside two discrepancy models agree within this many standard deviations of their difference.
 APART = 3.0
+#: The data exclude a discrepancy model of less probability if another one explains them: noise alone makes its misfit
+#: with at least this probability.
+EXCLUDED, EXPLAINS = 1e-6, 0.01
 #: Smallest probability of the misfit beside the most probable discrepancy model.
 LEAST_P = 1e-4
 
@@ -50,6 +53,11 @@ class UnderDiscrepancy(Brief):
         return max((fit.p_value for fit in self.fits.values()), default=0.0)
 
     @property
+    def explains(self) -> bool:
+        """Whether noise explains what the model leaves, without errors that readings share."""
+        return self.size == 0.0 and self.p_value > EXPLAINS
+
+    @property
     def refuted(self) -> bool:
         """Whether noise cannot explain the misfit of any fitted set."""
         return bool(self.fits) and self.p_value < LEAST_P
@@ -79,8 +87,13 @@ class Robustness(Brief):
 
     @property
     def counted(self) -> tuple[UnderDiscrepancy, ...]:
-        """The models, also improbable ones, and the strain laws that the data do not refute."""
-        return (*self.models, *(law for law in self.laws if not law.refuted))
+        """The models that the data do not exclude, and the strain laws that they do not refute.
+
+        All models count if the most probable one does not explain the data: more is wrong than they allow for.
+        """
+        explains = self.models[0].explains
+        models = (model for model in self.models if not (explains and model.probability < EXCLUDED))
+        return (*models, *(law for law in self.laws if not law.refuted))
 
     def least(self, key: str) -> float:
         """Smallest probability of an effect over the models and strain laws that count."""

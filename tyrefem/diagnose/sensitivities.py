@@ -15,6 +15,7 @@ from tyrefem.diagnose.candidates import Members
 from tyrefem.diagnose.energy_shapes import energy_shapes
 from tyrefem.diagnose.evaluations import Evaluations
 from tyrefem.diagnose.forward_model import DriveResponse
+from tyrefem.diagnose.gauges import gauges
 from tyrefem.diagnose.heat_patches import patches
 from tyrefem.diagnose.linear_model import DesignMatrix
 from tyrefem.diagnose.reduced_forward import Modes
@@ -130,7 +131,8 @@ def unknowns_of(
     """All unknowns that a diagnosis with these sensors may fit, and the number of nuisance unknowns (the first)."""
     nuisance = (*base_unknowns(study), *sensor_unknowns(study, set(measured)))
     effects = [unknown for each in candidates for unknown in (*each.amplitudes, *each.presence)]
-    return (*nuisance, *effects, *patches(study, settings), *energy_shapes(study, settings)), len(nuisance)
+    further = (*patches(study, settings), *energy_shapes(study, settings), *gauges(study, settings))
+    return (*nuisance, *effects, *further), len(nuisance)
 
 
 def shared_responses(

@@ -165,6 +165,8 @@ class DiagnosisSettings:
     energy_widths: tuple[float, ...] = (3.0,)
     #: Prior sd of each run's own strain energy over that of all runs.
     energy_of_run: float = 0.3
+    #: Prior sd of ln(thickness) of a region: gauges are off by 5 to 10 % (estimate).
+    gauge_sd: float = 0.07
     #: Sizes of missing heat as a discrepancy, over its prior sd; equally probable, so evidence is their average.
     heat_widths: tuple[float, ...] = (1.0, 3.0, 10.0)
     #: An effect is not named beside a discrepancy if heat of unknown origin explains the data by itself and the effect

@@ -55,6 +55,15 @@ class SharedError(Brief):
         """Rows (m, ...) of the held-out runs minus what those of the fitted runs, whitened (n, ...), say of them."""
         return np.asarray(held_out - self.held_out @ (self._columns.T @ rows))
 
+    def coefficients(self, rows: Array, slopes: Array, covariance: Array) -> tuple[Array, Array]:
+        """Mean and standard deviation (k,) of c.
+
+        ``rows``: whitened residuals (n,) of a fit; ``slopes`` (n, p), ``covariance`` (p, p): of its unknowns.
+        """
+        A = self._columns
+        spread = np.eye(A.shape[1]) - A.T @ A + A.T @ slopes @ covariance @ slopes.T @ A
+        return np.asarray(A.T @ rows), np.sqrt(np.maximum(np.diag(spread), 0.0))
+
     @cached_property
     def held_out_covariance(self) -> Array:
         """(m, m) covariance of the held-out readings about their prediction: 1 + C' (1 + C^T C)^-1 C'^T."""

@@ -10,7 +10,8 @@ from typing import Any
 from tyrefem.cache import Cache
 from tyrefem.effects import catalogue
 from tyrefem.effects.effect import Effect, Parameter, Prior
-from tyrefem.inputs.changes import scaled, value_at
+from tyrefem.inputs.changes import scaled
+from tyrefem.inputs.name_patterns import number_at
 from tyrefem.inputs.study import StudyData
 from tyrefem.quantity import parse
 
@@ -219,9 +220,9 @@ def _text(prior: Prior, value: float) -> float | str:
 def _written(study: StudyData, key: str, known: Cache[Any] | None) -> Any:
     """The number at a dotted name as it is written; it depends on the study's table of the first part of the name."""
     if known is None:
-        return value_at(study.data, key, study.folder)
+        return number_at(study.data, key, study.folder)
     table = repr(study.data.get(key.split(".", maxsplit=1)[0]))
-    return known.get((key, table, study.folder), lambda: value_at(study.data, key, study.folder))
+    return known.get((key, table, study.folder), lambda: number_at(study.data, key, study.folder))
 
 
 class _Entries:

@@ -1,0 +1,121 @@
+"""Effects beside another strain energy, other gauges and other speed laws of films; models that the data exclude."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any, cast
+
+import numpy as np
+import pytest
+from formula import Case, case, effect
+
+import tyrefem as tf
+from tyrefem.diagnose.candidates import SetPrior
+from tyrefem.diagnose.criterion import LogEvidence
+from tyrefem.diagnose.discrepancy import ENERGY, FURTHER, NONE, READINGS
+from tyrefem.diagnose.energy_shapes import courses, energy_shapes
+from tyrefem.diagnose.forward_selection import ForwardSelection
+from tyrefem.diagnose.gauges import gauges
+from tyrefem.diagnose.partly import beside_discrepancies
+from tyrefem.diagnose.ranked_beside import robustness
+from tyrefem.diagnose.robustness import Robustness, UnderDiscrepancy
+from tyrefem.diagnose.selection import SelectionProblem
+from tyrefem.diagnose.settings import DEFAULT
+from tyrefem.diagnose.shared_error import SharedError
+from tyrefem.diagnose.unknowns import Unknown, with_values
+from tyrefem.diagnose.verdict import PARTLY, UNEXPLAINED, judge, ranked
+from tyrefem.inputs.name_patterns import SCALES
+
+NO_EFFECTS = cast(Any, type("Study", (), {"card": type("Card", (), {"effects": ()})}))
+SHAPES = energy_shapes(NO_EFFECTS, DEFAULT)
+GAUGE = Unknown(f"{SCALES}.tread", DEFAULT.gauge_sd, keys=(f"{SCALES}.tread",))
+HOT, COLD, FILM = effect("hot", 10.0), effect("cold", 10.0), effect("outside-film-speed", 0.3)
+EVERY = (HOT, COLD, FILM)
+SETTINGS = replace(DEFAULT, largest=2)
+S = np.linspace(0.0, 1.0, 160)
+
+
+def law(values: Mapping[str, float]) -> np.ndarray:
+    """40 K of heat with a factor along the meridian, two bumps, and waves of a gauge and of a film's speed law."""
+    log_factor = courses(S, SHAPES) @ [values.get(unknown.key, 0.0) for unknown in SHAPES]
+    heat = 40.0 * (1 + S) * np.exp(log_factor)
+    hot, cold = (np.exp(-(((S - at) / 0.06) ** 2) / 2) for at in (0.2, 0.85))
+    bumps = values.get("hot", 0.0) * hot + values.get("cold", 0.0) * cold
+    waves = 60.0 * values.get(GAUGE.key, 0.0) * np.sin(40 * S) + 30.0 * values.get(FILM.key, 0.0) * np.cos(31 * S)
+    return np.asarray(heat + bumps + waves)
+
+
+def measured(hot: float) -> Case:
+    """Readings of a tyre with another strain energy, a tread 14 % thicker and another speed law of its film."""
+    noise = np.random.default_rng(3).normal(size=len(S))
+    steep = 40.0 * (1 + S) * 0.25 * np.tanh((0.45 - S) / 0.2)
+    readings = law({"hot": hot, GAUGE.key: 0.14, FILM.key: -0.4}) + steep + noise
+    return case(law, readings, EVERY, SETTINGS, further=(*SHAPES, GAUGE))
+
+
+@pytest.mark.parametrize("hot", [25.0, 0.0])
+def test_an_effect_is_named_beside_gauges_and_films_that_differ_too(hot: float) -> None:
+    data = measured(hot)
+    prior = SetPrior(EVERY, 0.5, SETTINGS.size_shares)
+    problem = SelectionProblem(data.residuals, data.predictions, EVERY, prior, LogEvidence())
+    scored = problem.settled(ForwardSelection().search(problem))
+    judgement = replace(judge(ranked(scored), lambda members: None, SETTINGS), verdict=UNEXPLAINED)
+    robust = robustness(problem, scored, certain=False, explained=False)
+    leading = robust.models[0]
+    assert leading.name == ENERGY
+    assert FURTHER in leading.words
+    assert leading.explains
+    # The film's law is a part of the discrepancy: its effect is told, with no fit of its own.
+    assert leading.named[FILM.key] > 0.99
+    assert not any(FILM in members for members in leading.fits)
+    assert leading.named.get("cold", 0.0) < 0.5
+    revision = beside_discrepancies(judgement, robust, SETTINGS)
+    assert revision.members == ((HOT,) if hot else ())
+    assert revision.verdict == (PARTLY if hot else UNEXPLAINED)
+    if hot:
+        low, high = robust.interval(HOT.amplitudes[0])
+        assert low < hot < high
+
+
+def under(name: str, probability: float, hot: float, size: float = 0.0, p_value: float = 0.5) -> UnderDiscrepancy:
+    fits = {(): type("Fit", (), {"p_value": p_value})}
+    return UnderDiscrepancy(name, size, name, probability, {"hot": hot}, (), {}, cast(Any, fits))
+
+
+def test_a_model_that_the_data_exclude_has_no_veto() -> None:
+    other = under(READINGS, 1e-9, 0.1)
+    assert Robustness((under(ENERGY, 1.0, 0.97), other)).least("hot") == 0.97
+    # Not excluded; or what leads does not explain the data, or only with errors of the readings.
+    assert Robustness((under(ENERGY, 1.0, 0.97), replace(other, probability=1e-4))).least("hot") == 0.1
+    assert Robustness((under(ENERGY, 1.0, 0.97, p_value=1e-3), other)).least("hot") == 0.1
+    assert Robustness((under(ENERGY, 1.0, 0.97, size=0.5), other)).least("hot") == 0.1
+    assert Robustness((under(NONE, 1.0, 0.97), other)).least("hot") == 0.97
+
+
+def test_coefficients_of_a_shared_error_are_those_of_the_joint_posterior() -> None:
+    rng = np.random.default_rng(5)
+    C, J, y = rng.normal(size=(9, 2)), rng.normal(size=(9, 3)), rng.normal(size=9)
+    both = np.hstack([C, J])
+    covariance = np.linalg.inv(np.eye(5) + both.T @ both)
+    mean = covariance @ both.T @ y
+    error = SharedError(C, np.zeros((0, 2)))
+    slopes = error.whitened(J)
+    of_x = np.linalg.inv(np.eye(3) + slopes.T @ slopes)
+    x = of_x @ slopes.T @ error.whitened(y)
+    c, sd = error.coefficients(error.whitened(y - J @ x), slopes, of_x)
+    np.testing.assert_allclose(c, mean[:2], atol=1e-12)
+    np.testing.assert_allclose(sd, np.sqrt(np.diag(covariance)[:2]), atol=1e-12)
+
+
+def test_gauges_are_those_of_the_regions_that_the_study_does_not_state() -> None:
+    study = tf.study("hidden-effect")
+    known = gauges(study, DEFAULT)
+    assert [unknown.key for unknown in known] == [f"{SCALES}.{region}" for region in study.section.regions]
+    stated = study.replace({"uncertainty": {"section.parameters.thickness_scale.tread": "5 %"}})
+    assert f"{SCALES}.tread" not in [unknown.key for unknown in gauges(stated, DEFAULT)]
+    assert gauges(tf.study("passenger-205-55r16"), DEFAULT) == ()
+    thicker = with_values(study, {known[0]: 0.05})
+    s = [0.5 * study.section.line.length]
+    inner, outer = thicker.section.total_thickness(s), study.section.total_thickness(s)
+    assert inner[0] > outer[0]
