@@ -174,7 +174,7 @@ def test_the_command_goes_on_where_it_was_and_says_so(
     shutil.copytree(case.kept.with_name("kept-2"), out / ".progress-2")
     mark = {"command": "diagnose", "complete": False, "writing": [f"{PROGRESS}*/*/*.npz"]}
     (out / "summary.json").write_text(json.dumps(mark), encoding="utf-8")
-    flags = ["--workers", "1", "--largest", "1", "--looks", "2", "--quiet"]
+    flags = ["--workers", "1", "--largest", "1", "--looks", "2"]
     assert main(["diagnose", str(case.study.file), "--out", str(out), *flags]) == 0
     printed, err = capfd.readouterr()
     assert err == ""

@@ -104,7 +104,7 @@ def test_the_command_calibrates_a_layout(
 ) -> None:
     monkeypatch.setattr("tyrefem.diagnose.isolability.planned_sensitivities", lambda *_, **__: known)
     out = tmp_path / "out"
-    arguments = ["isolability", str(case.study.file), "--calibrate", "60", "--out", str(out), "--quiet"]
+    arguments = ["isolability", str(case.study.file), "--calibrate", "60", "--out", str(out)]
     result = CliRunner().invoke(app, arguments)
     assert result.exit_code == 0, result.output
     assert "60 quick cases of study, seed 1" in result.output
