@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -196,6 +197,14 @@ def test_files_of_the_user_are_not_replaced(here: Path, capsys: pytest.CaptureFi
     assert tf.study("studies/passenger-225-45r17").section.thickness("tread", 0.0) == pytest.approx(7e-3, abs=1e-5)
     assert main(["new", "tyre", "225/45R17", "--out", "elsewhere"]) == 0
     assert tf.study("elsewhere/studies/passenger-225-45r17").section.name == "passenger-225-45r17"
+
+
+def test_the_answer_as_json(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["new", "tyre", "195/65R15", "--json"]) == 0
+    answer = json.loads(capsys.readouterr().out)
+    assert (here / answer["file"]).is_file()
+    assert tf.study(answer["study"]).section.name == "passenger-195-65r15"
+    assert any(note.startswith("dropped: mechanics.energy") for note in answer["notes"])
 
 
 def test_a_scaled_bias_tyre_runs_and_carries_like_the_first(here: Path) -> None:

@@ -9,8 +9,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import typer
-
+from tyrefem.cli.shell import answer_with, notify, say
 from tyrefem.errors import InputError, nearest
 
 #: Kind of tyre -> shipped study of that kind.
@@ -62,13 +61,23 @@ def new_tyre(size: str, source: str | None, numbers: Mapping[str, Any], out: Pat
         for target, (card, text) in files.items():
             with results_file(target, (".toml",), force=force), atomic_path(target) as temporary:
                 temporary.write_text(schema_line(card, target) + text, encoding="utf-8")
-            typer.echo(f"{target} written")
-    for sentence in tyre.notes.sentences:
-        typer.echo(f"  {sentence}")
     for warning in warnings:
-        typer.echo(f"warning: {warning}", err=True)
-    shown = (folder / library.FOLDERS["study"] / tyre.name).as_posix()
-    typer.echo(f"then: tyrefem run {shlex.quote(shown)}")
+        notify(f"warning: {warning}")
+    section, written_study = files
+    answer_with(
+        {
+            "kind": "tyre",
+            "file": section,
+            "study": written_study,
+            "size": tyre.size.size.text,
+            "rules": tyre.size.size.kind,
+            "numbers": {number.name: number.text for number in tyre.size.rules},
+            "notes": tyre.notes.sentences,
+        }
+    )
+    say(*(f"{target} written" for target in files))
+    say(*(f"  {sentence}" for sentence in tyre.notes.sentences))
+    say(f"then: tyrefem run {shlex.quote(written_study.parent.as_posix())}")
 
 
 def _checked(name: str, section: str, study_text: str) -> tuple[str, ...]:

@@ -9,7 +9,7 @@ import typer
 
 from tyrefem.cli.common import CaseOption, ForceOption, SetOption, settings, warn
 from tyrefem.cli.progress import progress
-from tyrefem.cli.shell import answer_with, say
+from tyrefem.cli.shell import answer_with, say, say_table
 from tyrefem.errors import InputError, nearest
 from tyrefem.output.file import PICTURES, results_file
 from tyrefem.requirements import Requirements
@@ -93,7 +93,8 @@ def show(
             temporary.write_bytes(picture(figure, path.suffix))
     answer_with({**shown, "facts": facts, "picture": path})
     for key, value in facts.items():
-        say(f"{key:28} {_formatted(value)}")
+        if key != "regions":  # printed as a table
+            say(f"{key:28} {_formatted(value)}")
     say(f"drawn in {path}")
 
 
@@ -161,6 +162,7 @@ def _strain(name: str, values: dict[str, Any], case: str | None) -> tuple[Any, d
         "rolling_radius_m": largest.rolling_radius,
         "footprint_length_m": largest.footprint_length,
         "road_fraction": largest.road_fraction,
+        "regions": strains.table.to_dict("records"),
     }
     _print_strains(strains)
     if loaded.card.mechanics.strain == "arcs":
@@ -174,7 +176,6 @@ def _strain(name: str, values: dict[str, Any], case: str | None) -> tuple[Any, d
 
 def _print_strains(strains: StrainByRegion) -> None:
     """Print a row per region."""
-    from rich.console import Console
     from rich.table import Table
 
     elastic = bool(strains.amplitudes)
@@ -193,11 +194,11 @@ def _print_strains(strains: StrainByRegion) -> None:
         if elastic:
             cells += [_percent(row["amplitude_mean"]), _percent(row["amplitude_highest"])]
         table.add_row(row["region"], *cells, f"{row['heat_W']:.1f}", f"{100 * row['heat_share']:.1f}")
-    Console(highlight=False).print(table)
-    typer.echo("U: strain energy per cycle, highest at s and depth; heat of the whole tyre at the start")
+    say_table(table)
+    say("U: strain energy per cycle, highest at s and depth; heat of the whole tyre at the start")
     if elastic:
-        typer.echo("strain: shear strain amplitude of a revolution")
-    typer.echo("")
+        say("strain: shear strain amplitude of a revolution")
+    say("")
 
 
 def _percent(share: float) -> str:

@@ -302,7 +302,9 @@ ANSWERS: dict[str, Keys] = {
     },
     "list": {"kind": "text: What is listed.", "entries": "list: Name and title, with file, side, family or plugin."},
     "new": {
-        "kind": "text: study, section, material, or kind of plugin.", "file": "text: The new file.",
+        "kind": "text: study, section, material, tyre, or kind of plugin.",
+        "file": "text: The new file; of a tyre its section.", "study*": "text: Study of a tyre.",
+        "notes*": "list: What of a tyre was scaled, kept and dropped.",
         "copy_of*": "text: The card that was copied.", "note*": "text: Numbers that hold for one tyre only.",
         "size*": "text: The size.", "rules*": "text: Rules of the size.",
         "outer_diameter_m*": "number: Outer diameter.", "overall_width_m*": "number: Overall width.",
