@@ -187,3 +187,18 @@ def test_a_comparison_records_what_it_used(write: Write) -> None:
     (used,) = study.compare(inputs=False).to_dict()["plugins"]
     assert (used["kind"], used["name"], used["file"]) == ("effect", "lamp", str(file))
     assert study.replace({"effects": []}).compare(inputs=False).to_dict()["plugins"] == []
+
+
+def test_a_tyre_rolls_with_an_own_friction_law_as_with_the_same_shipped_one(write: Write) -> None:
+    write("friction-law")
+    base = {"mechanics.strain": "fem", "mechanics.motion": "linear", "mesh.size": "12 mm", "mesh.element": "P1"}
+    constant = {"law": "constant", "coefficient": 0.9, "source": "estimate: a test"}
+    same = {"law": "falling", "at_rest": 0.9, "falls_by_half": "1e9 m/s", "rate": "0 1/delta_degC", "source": "a test"}
+    falling = {**same, "falls_by_half": "2 m/s"}
+    forces = []
+    for friction in (constant, same, falling):
+        tread = {"base": "nasa-tread", "friction": friction}
+        rolled = tf.study("nasa-22x5.5-8pr", {**base, "materials.tread": tread}).roll(slip_angle=0.05)
+        forces.append(rolled.summary()["F_y_N"])
+    assert forces[1] == pytest.approx(forces[0], rel=1e-8)
+    assert abs(forces[2]) < 0.99 * abs(forces[0])
