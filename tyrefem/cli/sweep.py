@@ -167,6 +167,12 @@ def sweep(
         bool, typer.Option("--restart", help="Compute the finished variants of the folder again.")
     ] = False,
     pictures: Annotated[bool, typer.Option(help="Draw the pictures and the page.")] = True,
+    vtk: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--vtk", metavar="VARIANT|front", help="Run this variant in full, for ParaView; front: the Pareto front."
+        ),
+    ] = None,
     force: ForceOption = False,
 ) -> None:
     """Compute many variants of a study; write tables (CSV, Parquet), pictures and one page.
@@ -177,6 +183,7 @@ def sweep(
     from tyrefem.cli.sweep_flags import computed_design, questions, questions_of_flags
     from tyrefem.quantity import parse
     from tyrefem.reports.sweep_files import file_names, kept_names, save
+    from tyrefem.reports.sweep_variants import chosen_variants, write_variants
     from tyrefem.variants.execution import Execution
 
     given = questions_of_flags(
@@ -200,6 +207,9 @@ def sweep(
         tick("drawing", 0, 1)
         with keeping(f"finished variants are in {folder}; the same command resumes from there"):
             summary = save(design, folder, pictures=pictures)
+            if vtk and not design.interrupted:
+                tick("VTK", 0, 1)
+                write_variants(design, folder, chosen_variants(design, vtk))
     answer_with(folder / "summary.json")
     say(*summary["words"])
     say(f"results in {folder}" + (f"; read {folder / 'sweep.html'}" if pictures else ""))

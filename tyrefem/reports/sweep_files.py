@@ -10,6 +10,7 @@ from tyrefem.inputs.study_plugins import plugin_summary
 from tyrefem.output import atomic_path, versions, write_json
 from tyrefem.reports.sweep import FILES as LIST
 from tyrefem.reports.sweep import clear, earlier, write_page
+from tyrefem.reports.sweep_variants import FOLDER as VARIANT_FILES
 from tyrefem.sweep.question import sweep_questions
 from tyrefem.sweep.sweep import Sweep
 from tyrefem.variants.store import NAME as VARIANTS
@@ -36,6 +37,7 @@ def file_names() -> tuple[str, ...]:
         "errors.csv",
         PAGE,
         *(f"pictures/{name}" for name in pictures),
+        *(f"{VARIANT_FILES}/*/*.{kind}" for kind in ("pvd", "vtu", "py")),
     )
 
 

@@ -90,6 +90,23 @@ class DesignData(Brief):
             return self.optimum.table
         raise InputError("the sweep file has neither a sample nor [optimise]: there is no table of variants")
 
+    def variant_study(self, variant: str | int) -> StudyData:
+        """The study of a variant of the sample, by its name in the table; the title says what it changes.
+
+        Raises
+        ------
+        InputError : no sample, or no variant of that name.
+        """
+        if self.swept is None:
+            raise InputError("the sweep has no sample, so no variants by name", field="variant")
+        plan, name = self.swept.plan, str(variant)
+        if name not in plan.names:
+            raise InputError(f"no variant '{name}'{nearest(name, plan.names)}", field="variant")
+        number = plan.names.index(name)
+        values = ", ".join(f"{key} {value}" for key, value in plan.settings(number).items())
+        study = plan.study.replace(plan.variants[number])
+        return study.replace({"title": f"{study.title}; variant {name}: {values}"})
+
     @property
     def pareto(self) -> pd.DataFrame:
         """The variants on the Pareto front, see `tyrefem.sweep.pareto.front`."""

@@ -1,0 +1,51 @@
+"""Fields of a sweep's chosen variants for ParaView, each from a full run."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tyrefem.errors import InputError
+from tyrefem.reports.vtk import file_name, write_series
+
+if TYPE_CHECKING:
+    from tyrefem.sweep.design import DesignData
+
+#: Folder of the variants' folders; word for all variants on the Pareto front.
+FOLDER, FRONT = "variants", "front"
+
+
+def chosen_variants(design: DesignData, words: Iterable[str]) -> list[str]:
+    """Names of variants, and `FRONT` for those on the Pareto front: each once, in this order.
+
+    Raises
+    ------
+    InputError : no variant of that name.
+    """
+    names: list[str] = []
+    for word in words:
+        names += [str(name) for name in design.pareto["variant"]] if word == FRONT else [word]
+    for name in names:
+        design.variant_study(name)
+    return list(dict.fromkeys(names))
+
+
+def write_variants(
+    design: DesignData, folder: Path, variants: Iterable[str | int] | None = None, *, revolved: bool = False
+) -> dict[str, Path]:
+    """Run variants and write the VTK files of each into ``variants/NAME``: name -> its .pvd; None: the Pareto front.
+
+    Raises
+    ------
+    InputError : no variant of that name; the folder cannot be written; errors of a run.
+    """
+    from tyrefem.simulation.run import run
+
+    chosen = chosen_variants(design, [FRONT] if variants is None else map(str, variants))
+    if not chosen:
+        raise InputError("no variant is on the Pareto front: none is feasible", field="variant")
+    return {
+        name: write_series(run(design.variant_study(name)), folder / FOLDER / file_name(name), revolved=revolved)
+        for name in chosen
+    }
