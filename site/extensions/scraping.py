@@ -20,5 +20,6 @@ def scrapers() -> tuple[Any, ...]:
 
 
 def note_example(_configuration: dict[str, Any], name: str) -> None:
-    """Remember which example runs: tables of references are kept by its name."""
+    """Remember which example runs: tables of references are kept by its name. Forget another's folder of effects."""
+    os.environ.pop("TYREFEM_EFFECTS", None)
     os.environ["TYREFEM_SITE_EXAMPLE"] = Path(name).stem

@@ -98,8 +98,8 @@ def test_a_case_says_problem_and_source_and_holds_results_beside_references(case
 def test_cases_and_examples_have_names_of_their_own() -> None:
     names = Counter(path.stem for path in [*GALLERY, *CASES])
     assert {name for name, count in names.items() if count > 1} == set()
-    assert len(GALLERY) >= 5
-    assert len(CASES) >= 5
+    assert len(GALLERY) >= 20
+    assert len(CASES) >= 25
 
 
 def test_the_reference_has_every_public_name() -> None:

@@ -40,7 +40,11 @@ def error(n, element):
     bump = 0.08 * np.sin(np.pi * x) * np.sin(np.pi * y)
     mesh = skfem.MeshQuad(np.stack([0.5 + x + bump, y - bump]), mesh.t)
     mesh = mesh.with_subdomains({"body": lambda x: x[0] > 0}).with_boundaries(
-        {"inside": lambda x: x[0] < 0.5 + 1e-9, "outside": lambda x: x[0] > 1.5 - 1e-9, "top": lambda x: x[1] > 1 - 1e-9}
+        {
+            "inside": lambda x: x[0] < 0.5 + 1e-9,
+            "outside": lambda x: x[0] > 1.5 - 1e-9,
+            "top": lambda x: x[1] > 1 - 1e-9,
+        }
     )
     conditions = {
         "inside": Fixed(lambda x, t: exact(*x)),

@@ -52,6 +52,8 @@ plt.show()
 table = ReferenceTable("A slab cools in air", "closed form", "Carslaw & Jaeger 1959")
 for i in (4, 12):
     for j, place in ((0, "insulated face"), (8, "cooled face")):
-        table.add(f"{place}, {history.times[i]:.0f} s", computed[i, j], exact(x[j], history.times[i]), "degC", within=0.005)
+        table.add(
+            f"{place}, {history.times[i]:.0f} s", computed[i, j], exact(x[j], history.times[i]), "degC", within=0.005
+        )
 table.add("heat balance, share", history.budget.imbalance, 0.0, within=1e-9)
 table

@@ -31,7 +31,9 @@ plt.show()
 
 # %%
 
-table = ReferenceTable("The NASA report's own network", "other formulation", "33 elements of Clark & Dodge 1980, appendix I")
+table = ReferenceTable(
+    "The NASA report's own network", "other formulation", "33 elements of Clark & Dodge 1980, appendix I"
+)
 for name, temperature in network.items():
     table.add(name, last[name], temperature, "degC", within=10)
 table

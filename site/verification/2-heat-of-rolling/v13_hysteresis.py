@@ -48,6 +48,8 @@ plt.show()
 
 # %%
 
-table = ReferenceTable("Loss of a revolution with many harmonics", "other formulation", "Maxwell element, step by step in time")
+table = ReferenceTable(
+    "Loss of a revolution with many harmonics", "other formulation", "Maxwell element, step by step in time"
+)
 table.add("energy lost per revolution", by_harmonics, in_time, percent=0.1)
 table

@@ -39,5 +39,11 @@ difference = (computed - printed).abs()
 table = ReferenceTable("Cattani's table of road films", "report", "Cattani et al. 2023, table 2")
 table.add(f"largest difference of {printed.size} values", difference.max().max(), 0.0, "W/m²/K", within=0.0051)
 for column in list(printed)[::2]:
-    table.add(f"150 km/h, {column.split('_')[1]} m", computed.loc[150, column], printed.loc[150, column], "W/m²/K", within=0.0051)
+    table.add(
+        f"150 km/h, {column.split('_')[1]} m",
+        computed.loc[150, column],
+        printed.loc[150, column],
+        "W/m²/K",
+        within=0.0051,
+    )
 table

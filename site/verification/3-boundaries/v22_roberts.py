@@ -22,7 +22,9 @@ for row in rows:
 # **Result**
 
 figure, axes = plt.subplots(figsize=(6, 3.8), layout="constrained")
-axes.errorbar([row.observed for row in rows], [row.predicted for row in rows], xerr=[row.uncertainty for row in rows], fmt="o")
+axes.errorbar(
+    [row.observed for row in rows], [row.predicted for row in rows], xerr=[row.uncertainty for row in rows], fmt="o"
+)
 most = 1.1 * max(row.observed for row in rows)
 axes.plot([0, most], [0, most], color="grey", linewidth=0.8)
 axes.set(xlabel="measured rise, K", ylabel="predicted rise, K")

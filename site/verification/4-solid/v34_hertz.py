@@ -20,11 +20,13 @@ from tyrefem.mechanics.footprint.example_tyre import stress_free
 
 shear, width = 1e6, 0.02
 radii = np.concatenate([np.linspace(0.25, 0.7, 7), 1 - 0.3 * np.linspace(1, 0, 15)[1:] ** 1.8])
-mesh = skfem.MeshQuad.init_tensor(radii, np.array([0.0, width])).with_boundaries({
-    "rim": lambda x: x[0] < 0.251,
-    "road": lambda x: x[0] > 0.9999,
-    "symmetry": lambda x: (x[1] < 1e-9) | (x[1] > width - 1e-9),
-})
+mesh = skfem.MeshQuad.init_tensor(radii, np.array([0.0, width])).with_boundaries(
+    {
+        "rim": lambda x: x[0] < 0.251,
+        "road": lambda x: x[0] > 0.9999,
+        "symmetry": lambda x: (x[1] < 1e-9) | (x[1] > width - 1e-9),
+    }
+)
 footprint = Pressing(stress_free(mesh, shear, 1e4 * shear)).at_deflection(0.008, 400)
 
 per_width = footprint.load / (2 * width)

@@ -26,7 +26,9 @@ slips, forces, moments = np.array([0.1, 0.3, 0.5, 0.7, 0.9]), [], []
 for s in slips:
     rigid = np.zeros((count, 2))
     rigid[:, 1] = 3 * most * s * tangential * step**2 / 2
-    side = -RollingContact(bristles(count, normal, tangential), gaps, rigid, np.full(count, friction)).solve().forces[:, 2]
+    side = (
+        -RollingContact(bristles(count, normal, tangential), gaps, rigid, np.full(count, friction)).solve().forces[:, 2]
+    )
     forces.append(side.sum() / most)
     moments.append(-(x * side).sum() / most)
     table.add(f"F/(µ Fz), s = {s:g}", forces[-1], 3 * s - 3 * s**2 + s**3, percent=0.5)

@@ -35,7 +35,9 @@ table = ReferenceTable("A belt on an elastic bed", "closed form", "string and be
 sigma, length = np.sqrt(2.0 / bed), (4 * 0.05 / bed) ** 0.25
 x, of_string = side_forces(601, string, 2.0)
 table.add("string, cornering stiffness", of_string.sum() / angle, 2 * bed * (1 + sigma) ** 2, percent=0.2)
-table.add("string, aligning stiffness", -(x * of_string).sum() / angle, 2 * bed * (sigma * (sigma + 1) + 1 / 3), percent=0.5)
+table.add(
+    "string, aligning stiffness", -(x * of_string).sum() / angle, 2 * bed * (sigma * (sigma + 1) + 1 / 3), percent=0.5
+)
 x, of_beam = side_forces(601, beam, 0.05)
 table.add("beam, cornering stiffness", of_beam.sum() / angle, 2 * bed * (1 + length) ** 2, percent=0.5)
 exact = bed * (2 / 3 + 2 * length + 2 * length**2 + length**3)

@@ -43,7 +43,9 @@ cases = {
 table = ReferenceTable("Cracking energy on its critical plane", "closed form", "Mars 2002")
 pull, normal = share(1.3, *cases["pull"])
 table.add("uniaxial pull: W_c/W", pull, 1.0, within=1e-3)
-table.add("uniaxial pull: angle of the normal from the axis", np.degrees(np.arccos(abs(normal[0]))), 0.0, "deg", within=0.5)
+table.add(
+    "uniaxial pull: angle of the normal from the axis", np.degrees(np.arccos(abs(normal[0]))), 0.0, "deg", within=0.5
+)
 compression, normal = share(0.8, *cases["pull"])
 table.add("uniaxial compression: W_c/W", compression, 0.375, within=1e-3)
 table.add("uniaxial compression: angle", np.degrees(np.arccos(abs(normal[0]))), 45.0, "deg", within=0.5)

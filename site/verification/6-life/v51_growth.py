@@ -26,7 +26,9 @@ for exponent in (1.0, 2.0, 4.3):
     exact, _ = quad(lambda c, a=slope, f=exponent: 1 / (10e-6 * (a * c) ** f), card.flaw, card.crack, epsrel=1e-12)
     table.add(f"cycles, exponent {exponent:g}", float(cycles_to_failure(card, energy)), exact, percent=1e-6)
     energies = np.geomspace(1e4, 1e6, 30)
-    axes.loglog(energies / 1e3, [float(cycles_to_failure(card, each)) for each in energies], label=f"exponent {exponent:g}")
+    axes.loglog(
+        energies / 1e3, [float(cycles_to_failure(card, each)) for each in energies], label=f"exponent {exponent:g}"
+    )
 
 # %%
 # **Result**
