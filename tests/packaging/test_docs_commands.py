@@ -36,6 +36,12 @@ ELSEWHERE = {
     r"(\.venv/bin/)?(python3|pip|ruff|lint-imports|mypy|pytest|\.) ?.*": ".ci/run installs, lints and tests",
     r"(\.venv/bin/)?python (benchmarks|tools)/.*": "makes tables and pictures of a page: minutes to hours",
     r"python site/build\.py.*": ".ci/run builds the site",
+    r"python -c .*": "prints a help text",
+    r"(export|paraview|pvpython) .*": "of the shell; of ParaView, which is no dependency",
+    r"tyrefem explore .*": "a minute: tests/explore",
+    r"tyrefem (new tan-delta-law|check plugins/|list tan-delta-laws).*": "tests/plugins/test_extending_page.py",
+    r"tyrefem (run studies/passenger-225.*|thermal-card .*)": "follow other commands: tests/sizes, tests/lumped",
+    r"tyrefem show strain passenger.*": "ten seconds: tests/strain/test_strain_by_region.py",
     r"dask .*": "starts a cluster: tests/sweep/test_schedulers.py has one",
     r".* tcp://.*": "needs a cluster: tests/sweep/test_schedulers.py has one",
     r"tyrefem \w+ (identify )?my-.*": "names files of the reader",
@@ -104,7 +110,9 @@ def test_every_command_is_one_of_tyrefem_or_has_a_reason() -> None:
 
 
 @pytest.mark.fast
-def test_every_reason_is_needed() -> None:
+def test_every_reason_is_needed_and_names_what_there_is() -> None:
+    named = {name for reason in ELSEWHERE.values() for name in re.findall(r"(?:tests|site)/[\w./]*\w", reason)}
+    assert [name for name in named if not (ROOT / name).exists()] == []
     plain = [" ".join(shlex.split(command)) for command in COMMANDS]
     assert [pattern for pattern in ELSEWHERE if not any(re.fullmatch(pattern, command) for command in plain)] == []
 
