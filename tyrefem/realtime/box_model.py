@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
 from tyrefem.errors import InputError, nearest
+from tyrefem.estimates.work import warn_if_long
 from tyrefem.inputs.study import StudyData
 from tyrefem.realtime.box_certificate import BoxCertificate, certified, is_temperature
 from tyrefem.realtime.box_runs import SettingTask, outcomes, perform_history, perform_skin
@@ -29,10 +30,11 @@ from tyrefem.reduced.surrogate import LEAST_RUN_TOLERANCE, TRAINING_FACTOR, chec
 from tyrefem.reduced.training import ReducedFineness, trained
 from tyrefem.reduced.training_rounds import Training
 from tyrefem.requirements import Requirements
+from tyrefem.simulation.estimate import RunEstimate
 from tyrefem.simulation.rolling_tyre import RollingTyre
 from tyrefem.variants.plan import Plan, plan_of
 from tyrefem.variants.samples import changes_at
-from tyrefem.variants.schedulers import Here, Scheduler
+from tyrefem.variants.schedulers import Here, Local, Scheduler
 
 Array = NDArray[np.float64]
 #: Error of the modes over the allowed error: the fewest modes that keep it are taken. In training: the middle.
@@ -47,6 +49,8 @@ ROUNDS = 3
 FINENESSES = (1, 2)
 #: Settings at which the places of the hottest nodes are searched.
 SEARCHED = 60
+#: Cost: equivalent full runs of training, certificate and search, and strain cycles by finite elements.
+RUNS, CYCLES = 16.0, 45.0
 #: Requirements of an exploration on a study.
 NEEDS = Requirements("an exploration")
 
@@ -165,6 +169,7 @@ def box_model(
     report = progress or (lambda what, done, total: None)
     scheduler = scheduler or Here()
     check_explored(plan, tolerance)
+    check_cost(plan.study, scheduler)
     inputs = drive_inputs(plan.study, plan.varied)
     fineness = [ReducedFineness.of(share * tolerance) for share in MODES_SHARES]
     training = Training(plan, scheduler, fineness[1], report, seed)
@@ -222,6 +227,18 @@ def check_explored(plan: Plan, tolerance: float) -> None:
             f"{plan.study.tolerance:g} K",
             field="tolerance",
         )
+
+
+def check_cost(study: StudyData, scheduler: Scheduler) -> None:
+    """Raise `InputError` if the parallel runs do not fit in memory; warn of long work."""
+    run, workers = RunEstimate.of(study), getattr(scheduler, "workers", 1)
+    if isinstance(scheduler, Here | Local):
+        run.check(workers)
+
+    def seconds(run: RunEstimate) -> float:
+        return (RUNS * run.transient_run.time + CYCLES * run.mechanics.time) / workers
+
+    warn_if_long(seconds(run), f"exploring {study.name}", lambda: run.quick_look(seconds))
 
 
 def _numbers(plan: Plan, place: Sequence[float] | Array) -> Array:
