@@ -67,7 +67,7 @@ def new(
     if kind not in (*DEFAULTS, "tyre"):
         raise InputError(f"no kind '{kind}'{nearest(kind, [*DEFAULTS, 'tyre', *PLUGINS])}")
     if not name:
-        raise InputError("is missing: the new card's name, or a tyre's size", field="name")
+        raise InputError("is missing: the new card's name; an empty one is not allowed as a card's name", field="name")
     of_size = {"rim_width": rim, "load": load, "pressure": pressure, **settings(changes)}
     of_size = {key: value for key, value in of_size.items() if value is not None}
     if kind == "tyre":
