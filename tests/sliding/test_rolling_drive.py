@@ -18,6 +18,8 @@ from tyrefem.mechanics.rolling.rolled_footprint import RolledFootprint
 from tyrefem.mechanics.rolling.rolling_motion import RollingMotion
 from tyrefem.mechanics.rolling.steady_rolling import RollingLoads, SteadyRolling
 from tyrefem.mechanics.rolling.turning import cycle_of
+from tyrefem.reports.figures.heat_source import heat_source_figure, unevenness, zone_heat
+from tyrefem.reports.run import slip_columns
 
 BASE = {
     "mesh.size": "12 mm", "mechanics.strain": "fem", "mechanics.motion": "linear", "drive.load": "6 kN",
@@ -215,6 +217,17 @@ def test_strain_cycles_nearby_have_their_friction(tmp_path):
     assert works[0] == pytest.approx(works[1], rel=1e-12)
     assert works[0] == pytest.approx(raised.run().tyre.schedule.cycles[0][0].friction.total, rel=1e-9)
     assert works[0] != pytest.approx(near.schedule.cycles[0][0].friction.total, rel=1e-3)
+
+
+def test_pictures_and_tables_of_a_cornering_run():
+    """Where one side is hotter, the picture shows the heat of both; the phases have their slip angle."""
+    cornering, straight = run(slip_angle="3 deg"), run()
+    uneven, even = (unevenness(zone_heat(result, len(result.times) - 1)) for result in (cornering, straight))
+    assert even < 0.01 < 0.03 < uneven
+    assert slip_columns(cornering.study.card.drive) == {"slip angle [°]": ["3"]}
+    assert slip_columns(straight.study.card.drive) == {}
+    # One colour bar in place of two.
+    assert len(heat_source_figure(cornering).axes) == len(heat_source_figure(straight).axes) - 1
 
 
 def test_a_study_without_the_law_is_not_changed_by_it():

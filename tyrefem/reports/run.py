@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import datetime
+import math
 import tempfile
 from dataclasses import replace
 from pathlib import Path
@@ -13,6 +14,7 @@ import numpy as np
 
 from tyrefem.geometry.place_names import place
 from tyrefem.inputs.study_plugins import plugins_of
+from tyrefem.inputs.wheel_state import wheel_state
 from tyrefem.output import atomic_path, versions
 from tyrefem.reports.explore_link import ExploreLink, explore_link
 from tyrefem.reports.inputs import (
@@ -28,6 +30,7 @@ from tyrefem.reports.run_files import loaded_cycle, of_run, summary
 from tyrefem.reports.words import number, seconds
 
 if TYPE_CHECKING:
+    from tyrefem.inputs.drive import Drive
     from tyrefem.simulation.phases import PhaseState
     from tyrefem.simulation.result import ResultData
 
@@ -57,7 +60,7 @@ def sliding_rows(result: ResultData) -> list[list[str]]:
     return [
         [
             phase.name + (" (locked)" if phase.locked else ""), f"{phase.sliding_speed:.2f}",
-            number(phase.pressure / 1e3), number(phase.friction, 3),
+            number(phase.pressure / 1e3), f"{phase.friction:.3f}",
             f"{number(phase.friction_lowest, 3)}, decomposition" if phase.capped else "not limited",
             number(phase.friction_work / 1e3), number(phase.tread_heat / 1e3), f"{phase.tread_start:.1f}",
             f"{phase.tread_highest:.1f}", beside[phase.name], f"{phase.exit_edge_highest:.1f}",
@@ -73,6 +76,7 @@ def content(result: ResultData) -> dict[str, Any]:
     """All values of the template, as text."""
     study = result.study
     materials, estimates = material_rows(study)
+    slip = slip_columns(study.card.drive)
     text, as_written = study_text(study)
     return {
         "title": study.title,
@@ -85,7 +89,11 @@ def content(result: ResultData) -> dict[str, Any]:
         "published": [value.cells for value in of_run(result)],
         "sensors": _sensors(result),
         "extremes": _extremes(result),
-        "phases": [_phase(result, phase) for phase in result.phases],
+        "phases": [
+            [*cells[:SLIP_PLACE], *slips, *cells[SLIP_PLACE:]]
+            for cells, *slips in zip((_phase(result, phase) for phase in result.phases), *slip.values(), strict=True)
+        ],
+        "slip": list(slip),
         "budget": _budget(result),
         "imbalance": f"{result.heat_budget.imbalance:.1e}",
         "materials": materials,
@@ -231,6 +239,22 @@ def _extremes(result: ResultData) -> Rows:
     ]  # fmt: skip
 
 
+#: Place of the columns of slip in the table of phases, after the pressure.
+SLIP_PLACE = 5
+
+
+def slip_columns(drive: Drive) -> dict[str, list[str]]:
+    """Heading -> text of every phase at its end: slip angle, camber, braking slip and torque, if a phase has them."""
+    ends = [wheel_state(phase, 1.0) for phase in drive.phases]
+    columns = {
+        "slip angle [°]": [math.degrees(wheel.slip_angle) for wheel in ends],
+        "camber [°]": [math.degrees(wheel.camber) for wheel in ends],
+        "braking slip [%]": [-100 * (wheel.slip or 0.0) for wheel in ends],
+        "torque [N m]": [wheel.torque or 0.0 for wheel in ends],
+    }
+    return {head: [f"{value:z.3g}" for value in values] for head, values in columns.items() if any(values)}
+
+
 def _phase(result: ResultData, phase: PhaseState) -> list[str]:
     reached = result.times[-1]
     state = "" if reached >= phase.end - 1e-6 else " (not reached)" if phase.start >= reached else " (cut short)"
@@ -305,8 +329,8 @@ CAPTIONS = {
     "histories.png": "Readings of the thermocouples and temperature of the contained air over time.",
     "sliding.png": "Contact temperatures in every phase with slip. The exit edge is the hottest place of a contact.",
     "heat-budget.png": "Left: generated heat (rising) equals stored and lost heat (falling). Right: powers over time.",
-    "heat-source.png": "Strain energy per revolution and heat source, by zone, at the end of the last phase that "
-    "rolls under load.",
+    "heat-source.png": "Heat source by zone, and strain energy per revolution where both sides are alike, at the end "
+    "of the rolling phase with most heat.",
     "strain-cycle.png": "The section without load and under the largest load, and the strain cycle along the meridian.",
     "mesh.png": "The modelled mesh.",
     "3d": "Temperature of the tyre, a quarter cut away.",

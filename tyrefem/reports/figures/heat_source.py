@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 #: Share of the section's area that a colour scale spans; higher values have the last colour.
 SPANNED = 0.99
+#: Difference of the heat of both sides, over the whole, above which both are drawn.
+UNEVEN = 0.03
 
 
 @dataclass(frozen=True)
@@ -57,11 +59,15 @@ def zone_heat(result: ResultData, i: int) -> list[ZoneHeat]:
 
 
 def heat_source_figure(result: ResultData) -> Figure:
-    """Draw strain energy per cycle, J/m3 (left), and heat source, W/m3, of the phase with most heat (right)."""
+    """Draw strain energy per cycle, J/m3 (left), and heat source, W/m3, of the phase with most heat (right).
+
+    Where the heat of both sides differs, as under a slip angle or camber, only the heat source, on both sides.
+    """
     i = result.rolling_reading
     zones = zone_heat(result, len(result.times) - 1 if i is None else i)
     total = sum(zone.power for zone in zones)
-    return energy_and_heat(result.study, zones, _subtitle(result, i, total))
+    uneven = not result.study.section.half and unevenness(zones) > UNEVEN
+    return energy_and_heat(result.study, zones, _subtitle(result, i, total, uneven=uneven), uneven=uneven)
 
 
 def cycle_heat_figure(strains: StrainByRegion) -> Figure:
@@ -90,8 +96,9 @@ def cycle_heat_figure(strains: StrainByRegion) -> Figure:
     return energy_and_heat(tyre.study, zones, subtitle)
 
 
-def energy_and_heat(study: StudyData, zones: list[ZoneHeat], subtitle: str) -> Figure:
-    """Draw strain energy per cycle (left) and heat source (right) of zones, with their powers beside."""
+def energy_and_heat(study: StudyData, zones: list[ZoneHeat], subtitle: str, *, uneven: bool = False) -> Figure:
+    """Draw strain energy per cycle (left) and heat source (right) of zones, with their powers beside; ``uneven``: the
+    heat source on both sides."""
     total = sum(zone.power for zone in zones)
     energies, sources = [zone.energy for zone in zones], [zone.source for zone in zones]
     top_u, top_q = scale_top(zones, energies), scale_top(zones, sources)
@@ -99,14 +106,19 @@ def energy_and_heat(study: StudyData, zones: list[ZoneHeat], subtitle: str) -> F
     factor_q, unit_q = si(top_q, "W/m³")
     rows = [_row(zone, total) for zone in zones]
     names = [zone.title if zone.name == zone.title else f"{zone.name}: {zone.title}" for zone in zones]
-    drawn = canvas(study.section, names, rows, bars=2)
+    drawn = canvas(study.section, names, rows, bars=1 if uneven else 2)
     left = right = None
     for zone in zones:
-        left = _half(drawn, zone, zone.energy / factor_u, -1.0, ENERGY_MAP, top_u / factor_u or 1.0)
         right = _half(drawn, zone, zone.source / factor_q, 1.0, temperature_map(), top_q / factor_q or 1.0)
+        if uneven:
+            _half(drawn, zone, zone.source / factor_q, -1.0, temperature_map(), top_q / factor_q or 1.0)
+        else:
+            left = _half(drawn, zone, zone.energy / factor_u, -1.0, ENERGY_MAP, top_u / factor_u or 1.0)
     draw_outlines(drawn.axes, study.section, color="#505050", width=0.7)
-    drawn.axes.plot([0, 0], [drawn.section.place(0.0, 0.0)[0] * 1e3, drawn.high], color="white", lw=2.5, zorder=4)
-    _bar(drawn, left, "strain energy per cycle U", unit_u, max(float(u.max()) for u in energies) / factor_u, -1.0)
+    if not uneven:
+        peak = max(float(u.max()) for u in energies) / factor_u
+        drawn.axes.plot([0, 0], [drawn.section.place(0.0, 0.0)[0] * 1e3, drawn.high], color="white", lw=2.5, zorder=4)
+        _bar(drawn, left, "strain energy per cycle U", unit_u, peak, -1.0)
     _bar(drawn, right, "heat source q", unit_q, max(float(q.max()) for q in sources) / factor_q, 1.0)
     anchors = [_anchor(drawn, zone) for zone in zones]
     order = sorted(range(len(zones)), key=lambda n: -anchors[n][1])
@@ -114,6 +126,17 @@ def energy_and_heat(study: StudyData, zones: list[ZoneHeat], subtitle: str) -> F
     drawn.beside([Label(rows[n], anchors[n][0], anchors[n][1]) for n in order], 1.0)
     title(drawn.figure, study.title, subtitle)
     return drawn.figure
+
+
+def unevenness(zones: list[ZoneHeat]) -> float:
+    """Difference of the heat of both sides of a full section, over their sum; 0 without heat."""
+    sides = np.zeros(2)
+    for zone in zones:
+        r, z = zone.points[:, zone.corners.T]
+        area = np.abs((r[1] - r[0]) * (z[2] - z[0]) - (r[2] - r[0]) * (z[1] - z[0])) / 2
+        heat = area * r.mean(axis=0) * zone.source[zone.corners].mean(axis=1)
+        sides += [heat[z.mean(axis=0) < 0].sum(), heat[z.mean(axis=0) > 0].sum()]
+    return float(abs(sides[1] - sides[0]) / sides.sum()) if sides.sum() > 0 else 0.0
 
 
 def scale_top(zones: list[ZoneHeat], values: list[Array]) -> float:
@@ -144,13 +167,14 @@ def _row(zone: ZoneHeat, total: float) -> str:
     return f"{zone.power / factor:{digits(total / factor)}} {unit}{share}"
 
 
-def _subtitle(result: ResultData, i: int | None, total: float) -> str:
+def _subtitle(result: ResultData, i: int | None, total: float, *, uneven: bool = False) -> str:
     if i is None:
         return "no heat: the tyre never rolls under load; left: strain energy of a cycle, if it rolled"
     divisor, unit = time_unit(float(result.times[-1]))
     force = total / result.tyre.motion(float(result.times[i]) * (1 - 1e-12)).speed
+    shown = "heat source of both sides" if uneven else "left: strain energy per cycle; right: heat source"
     return (
-        f"left: strain energy per cycle; right: heat source after {result.times[i] / divisor:.4g} {unit}; "
+        f"{shown} after {result.times[i] / divisor:.4g} {unit}; "
         f"whole tyre {total:.4g} W = rolling resistance {force:.3g} N times speed"
     )
 
