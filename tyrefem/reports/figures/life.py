@@ -28,9 +28,10 @@ COLOURS = "inferno"
 def life_figure(life: LifeData, places: Sequence[FailurePlace]) -> Figure:
     """Draw log10 km of every element; grey: no ``[fatigue]``. Numbers: the places that fail first, with their km."""
     section = life.study.section
-    labels = [_label(number, place) for number, place in enumerate(places, start=1)]
-    names = region_labels(section)
-    drawn = canvas(section, [label.text for label in names], [label.text for label in labels])
+    labels = [place_label(number, place, half=section.half) for number, place in enumerate(places, start=1)]
+    right = [label for label in labels if label.x >= 0]
+    left = sorted([*region_labels(section), *(label for label in labels if label.x < 0)], key=lambda label: -label.y)
+    drawn = canvas(section, [label.text for label in left], [label.text for label in right])
     _map(drawn, life)
     draw_outlines(drawn.axes, section, color="#404040", width=0.3)
     for number, place in enumerate(places, start=1):
@@ -38,17 +39,19 @@ def life_figure(life: LifeData, places: Sequence[FailurePlace]) -> Figure:
         drawn.axes.plot([x], [y], "o", ms=3.5, mfc="white", mec=INK, mew=0.8, zorder=8)
         if number == 1:
             drawn.axes.plot([x], [y], "*", ms=12, mfc="white", mec=INK, mew=1.0, zorder=9)
-    drawn.beside(sorted(labels, key=lambda label: -label.y), 1.0)
-    drawn.beside(names, -1.0)
+    drawn.beside(sorted(right, key=lambda label: -label.y), 1.0)
+    drawn.beside(left, -1.0)
     given = "" if life.temperature is None else f", {life.temperature:g} °C everywhere"
     title(drawn.figure, life.study.title, f"distance until a flaw is a crack{given}; not compared with a measured life")
     return drawn.figure
 
 
-def _label(number: int, place: FailurePlace) -> Label:
+def place_label(number: int, place: FailurePlace, *, half: bool) -> Label:
+    """The label of a place, on its side; of a half section, whose sides are alike, on the right."""
     km = f"{place.km:,.0f}" if place.km < 1e7 else f"{place.km:.1g}"
     text = f"{number}  {km} km, {place.temperature:.0f} °C"
-    return Label(text, abs(place.z) * 1e3, place.r * 1e3, bold=number == 1)
+    z = abs(place.z) if half else place.z
+    return Label(text, z * 1e3, place.r * 1e3, bold=number == 1)
 
 
 def _map(drawn: Canvas, life: LifeData) -> None:
