@@ -25,9 +25,6 @@ COARSE = {
     "nasa-": ["--set", "mesh.size=14 mm"],
     "example-validation": ["--set", "mesh.size=14 mm"],
     "passenger-": ["--set", "mesh.size=18 mm", "--set", "mechanics.motion=linear"],
-    "truck-": ["--set", "mesh.size=30 mm", "--set", "mechanics.motion=linear"],
-    "aircraft-radial": ["--set", "mesh.size=25 mm", "--set", "mechanics.motion=linear"],
-    "measured-": ["--set", "mesh.size=18 mm", "--set", "mechanics.motion=linear"],
 }
 #: Commands that take a study and ``--set``.
 OF_STUDY = {"run", "press", "modes", "strain", "compare", "wear", "life", "sweep"}
@@ -60,6 +57,7 @@ ELSEWHERE = {
     r"tyrefem run nasa-taxi-takeoff --set mechanics\.feedback.*": "half a minute: tests/feedback",
     r"tyrefem run .*rig-trtlab-identified.*": "takes the cards of an identification: tests/rig",
     r"tyrefem run .*mesh\.size=0\.11 mm.*": "is refused, as its page says: tests/estimate",
+    r"tyrefem (run|press) (aircraft-radial|truck-|measured-).*": "half a minute: tests/studies, tests/sizes",
     r"tyrefem wear .*": "a minute: tests/wear, site/gallery",
     r"tyrefem life (?!.*--no-sensitivity).*": "five runs: tests/cli/test_life_command.py",
     r"tyrefem .*--out results/first": "the ring of 60 MB: tests/output, site/gallery",
