@@ -13,8 +13,9 @@ from pathlib import Path
 from every_command import Command, commands
 
 Process = subprocess.Popen[str]
-#: Commands that compute something.
-COMPUTING = [each for each in commands() if "quiet" in each.options]
+#: Commands that answer at once, by their first word; the others compute something.
+AT_ONCE = {"check", "list", "new", "road", "schema", "show", "slide"}
+COMPUTING = [each for each in commands() if each.words.split()[0] not in AT_ONCE]
 
 
 def started(command: Command, out: Path, prepare: Callable[[], None] | None = None, **variables: str) -> Process:
