@@ -76,7 +76,11 @@ def test_a_command_asks_for_one_case(
 
 def test_every_command_that_takes_a_study_takes_a_case() -> None:
     commands = typer.main.get_command(app).commands.items()  # type: ignore[attr-defined]
-    of_studies = {name: command for name, command in commands if any(item.name == "study" for item in command.params)}
+    of_studies = {
+        name: command
+        for name, command in commands
+        if any((item.name, item.param_type_name) == ("study", "argument") for item in command.params)
+    }
     assert set(of_studies) - {"run"} <= {parts[0] for parts in COMMANDS.values()}
     for name, command in of_studies.items():
         assert "case" in [item.name for item in command.params], name

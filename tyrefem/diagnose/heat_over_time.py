@@ -109,7 +109,7 @@ def _estimated(
     places = responses.places(coarse, tried)
     chosen = pursuit(data, places, coarse, settings.most_sources, settings.source_gain)
     # What even the free courses leave is an error of the linear model: with less weight it makes no further sources.
-    exact, data = data, replace(data, weight=min(1.0, len(data.data) / misfit(data, chosen)))
+    exact, data = data, replace(data, weight=1.0 / max(1.0, misfit(data, chosen) / len(data.data)))
     chosen = pursuit(data, places, coarse, settings.most_sources, settings.source_gain)
     shares, refined, layered = [], [], dict[tuple[float, str], Place]()
     for number, (place, _) in enumerate(chosen):
