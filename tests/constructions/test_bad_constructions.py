@@ -44,7 +44,7 @@ CORDS = "materials.belt-1.cords"
             {"section.layers.2.regions.0.to": "125 mm", "section.layers.2.regions.1.to": "135 mm"},
             "passenger-205", "layers.2.regions", "belt 'belt-1' is wider than the section.*turns inwards 0.1",
         ),
-        ({"section.layers.9.name": "x"}, "study", "section.layers", "no entry '9'; allowed: 0 to 6"),
+        ({"section.layers.9.name": "x"}, "study", "section.layers", "no entry '9'; allowed: belt-1 and apex"),
         (
             {"materials.tread.elasticity.bulk_modulus": "5 MPa"},
             "rubber-tread-passenger", "elasticity.neo-hookean.bulk_modulus", "10 times the shear modulus",

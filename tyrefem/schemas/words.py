@@ -75,7 +75,8 @@ def _mentioned(text: str) -> dict[str, str]:
     places = [*_NAMED.finditer(text)]
     words: dict[str, str] = {}
     for place, after in _stretches(places, text):
-        rest = text[place.end() : after]
+        # Without the beginning of a list that names the next ones: "Standard deviations:".
+        rest = re.sub(r"(?<=\.) [A-Z][^.]*:$", "", text[place.end() : after].rstrip())
         named = rest[1:] if rest.startswith(":") else f"{place[1]}{rest}"
         for name in re.findall(r"``(\w+)``", place[1]):
             words.setdefault(name, _sentence(named))
