@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -45,7 +46,7 @@ def wheel_angles(near: float, fine: float = float(FINE)) -> Array:
 
 
 @dataclass(frozen=True, eq=False)
-class RevolvedSection:
+class RevolvedSection(ABC):
     """Points, cells and fields of the whole deformed tyre; a half section gives both halves.
 
     The hexahedra's node order gives positive volumes, unless an element is folded.
@@ -59,39 +60,39 @@ class RevolvedSection:
     most_points: int = MOST_POINTS
 
     @property
+    @abstractmethod
     def angles(self) -> Array:
         """(n,) from the middle of the footprint, rad."""
-        raise NotImplementedError
 
     @property
+    @abstractmethod
     def motions(self) -> tuple[Array, ...]:
         """(harmonics + 1, n_dofs) amplitudes U, m, of u = Re((U_r, U_z, -i U_t) e^(i n t)) beyond inflation, of a full
         section or of both halves; two of a half section: of the side z > 0, and of the mirror image of the other."""
-        raise NotImplementedError
 
     @property
+    @abstractmethod
     def strains(self) -> tuple[StrainHarmonics, ...]:
         """The strains of `motions`."""
-        raise NotImplementedError
 
     @property
+    @abstractmethod
     def losses(self) -> tuple[RevolutionLoss, ...]:
         """The losses of `strains`; none if the wheel does not roll."""
-        raise NotImplementedError
 
     @property
+    @abstractmethod
     def point_data(self) -> Mapping[str, Array]:
         """Values of the points, beside the displacement."""
-        raise NotImplementedError
 
     @property
     def cell_data(self) -> Mapping[str, Array]:
         """Values of the cells, beside region, strain energy and loss."""
         return {}
 
+    @abstractmethod
     def in_space(self, places: Array) -> Array:
         """(3, ...) coordinates of the file for places (x forward, y down, z along the axis), m."""
-        raise NotImplementedError
 
     @cached_property
     def section(self) -> tuple[Array, Array, Array, Array, Array]:

@@ -100,7 +100,7 @@ ANSWERS: dict[str, Keys] = {
         "sets": "list: Sets of effects with probability and fit.", "gap": "table: rms before and after.",
         "noise": "table: Noise as stated and as the data have it.", "confidence": "table?: Calibrated probability.",
         "discrepancies": "list: What other errors of the model would change.",
-        "possible_effects": "table: Effects that could not be told from these.",
+        "possible_effects": "table: Effects that may act beside what else is wrong.",
         "strain_laws": "list: Other strain laws.", "better_strain_law": "table?: A strain law that fits better.",
         "conformal": "table?: Set with known coverage.", "prior_sensitivity": "list: Other priors and their verdicts.",
         "where": "table?: Where measurement and study disagree most.",
