@@ -8,6 +8,7 @@ from __future__ import annotations
 import ast
 import importlib
 import importlib.util
+import json
 import re
 import sys
 from collections import Counter
@@ -119,3 +120,30 @@ def test_a_row_beyond_its_limit_is_refused() -> None:
         table.add("force", 102.0, 100.0, "N", percent=1)
     assert "+0.5" in table._repr_html_()
     assert "passed 1/1" in table._repr_html_()
+
+
+def test_a_link_inside_the_site_that_leads_nowhere_is_named(tmp_path: Path) -> None:
+    (tmp_path / "guide").mkdir()
+    (tmp_path / "guide" / "a.html").write_text('<h1 id="top"></h1><a href="../b.html#place">b</a>', encoding="utf-8")
+    lines = ("guide/a.html", "guide/a.html#top", "guide/", "guide/a.html#no", "no.html", "https://example.org/no")
+    links = "".join(f'<a href="{line}">x</a>' for line in lines)
+    (tmp_path / "b.html").write_text(f'<p id="place">{links}</p><img src="no.png">', encoding="utf-8")
+    dead = list(module(SITE / "links.py").dead_links(tmp_path))
+    assert dead == ["b.html: guide/", "b.html: guide/a.html#no", "b.html: no.html", "b.html: no.png"]
+
+
+def test_a_server_that_is_not_reached_is_no_broken_link(tmp_path: Path) -> None:
+    answers = [
+        ("https://a.org/", "working", ""),
+        ("https://b.org/", "broken", "404 Client Error: Not Found for url: https://b.org/"),
+        ("https://c.org/", "broken", "HTTPSConnectionPool(host='c.org', port=443): Max retries exceeded"),
+        ("https://d.org/", "broken", "403 Client Error: Forbidden for url: https://d.org/"),
+        ("https://e.org/", "timeout", "read timed out"),
+    ]
+    lines = [json.dumps({"filename": "p.md", "lineno": 1, "uri": uri, "status": status, "info": info})
+             for uri, status, info in answers]  # fmt: skip
+    (tmp_path / "output.json").write_text("\n".join(lines), encoding="utf-8")
+    broken, unreachable, answered = module(SITE / "links.py").answers_of_servers(tmp_path / "output.json")
+    assert [line.split(": ")[1] for line in broken] == ["https://b.org/"]
+    assert len(unreachable) == 3
+    assert answered == 1

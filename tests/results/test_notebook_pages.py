@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import base64
 import re
+import subprocess
+import sys
 from collections.abc import Callable
 from html.parser import HTMLParser
 from pathlib import Path
@@ -17,6 +19,7 @@ import tyrefem as tf
 from tyrefem.api import Diagnosis
 from tyrefem.effects import catalogue
 from tyrefem.reports import notebook
+from tyrefem.reports.figures.cells import triangles
 
 QUICK = {"mesh.size": "12 mm", "drive.duration": "60 s"}
 VOID = {"br", "img", "circle", "rect", "polygon", "meta"}
@@ -126,6 +129,37 @@ def test_the_picture_of_a_result_is_a_png_on_nothing() -> None:
     assert pixels.shape[2] == 4
     assert pixels[-1, pixels.shape[1] // 2, 3] == 0.0
     assert pixels[..., 3].max() == 1.0
+
+
+def test_the_picture_has_the_colours_of_the_pictures_and_the_values_of_the_field() -> None:
+    from tyrefem.reports.figures.style import temperature_map
+    from tyrefem.reports.raster import colour_table, raster
+
+    table = temperature_map()(np.linspace(0, 1, 256))[:, :3] * 255
+    assert np.abs(table - colour_table()).max() < 6
+    result = quick().run()
+    operators, values = result.tyre.problem.operators, np.asarray(result.history.values[-1])
+    r, z = operators.points
+    scale = 200 / np.ptp(r)
+    places = np.column_stack([(z - z.min()) * scale, (r.max() - r) * scale])
+    shape = (200, round(np.ptp(z) * scale))
+    image = raster(places, triangles(operators)[0], values, shape)
+    row, column = np.argwhere(np.isfinite(image))[::50].T
+    points = [(r.max() - (y + 0.5) / scale, z.min() + (x + 0.5) / scale) for y, x in zip(row, column, strict=True)]
+    assert len(points) > 50
+    assert image[row, column] == pytest.approx(result.at(points)[-1], abs=0.5)
+
+
+def test_a_page_of_a_result_needs_no_drawing_library() -> None:
+    """In a fresh process: matplotlib and pyvista take longer to import than the page takes."""
+    lines = (
+        "import sys, tyrefem as tf",
+        "study = tf.study('nasa-22x5.5-8pr', {'mesh.size': '12 mm', 'drive.duration': '60 s'})",
+        "assert study._repr_html_() and study.run()._repr_html_()",
+        "print([name for name in ('matplotlib', 'pyvista', 'vtkmodules') if name in sys.modules])",
+    )
+    done = subprocess.run([sys.executable, "-c", "\n".join(lines)], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
 
 
 def test_text_is_escaped() -> None:

@@ -6,7 +6,6 @@ Text and lines take the notebook's colour, so that they are seen on light and da
 from __future__ import annotations
 
 import base64
-import io
 from collections.abc import Mapping, Sequence
 from html import escape
 from typing import TYPE_CHECKING, Any
@@ -45,7 +44,7 @@ def page(thing: Brief, verdict: str, picture: str, *, colour: str = PLAIN, leave
         f'<div style="border-left:4px solid {colour};padding-left:10px;margin-bottom:6px"><strong>{escape(verdict)}'
         f'</strong><br><span style="opacity:.65">{escape(heading_of(thing))}</span></div>'
         f'<div style="display:flex;flex-wrap:wrap;gap:18px;align-items:flex-start"><div>{picture}</div>'
-        f'<table style="border-collapse:collapse;margin:0;border:none;font-size:inherit;flex:1 1 320px">{rows}</table>'
+        f'<table style="border-collapse:collapse;margin:0;border:none;font-size:inherit;color:inherit;flex:1 1 320px">{rows}</table>'
         "</div></div>"
     )
 
@@ -125,45 +124,28 @@ def result_page(result: ResultData) -> str:
 
 def temperature_picture(result: ResultData) -> str:
     """The section's temperature at the end, with a scale."""
-    from matplotlib import rc_context
-
-    from tyrefem.reports.figures.canvas import sides
     from tyrefem.reports.figures.cells import triangles
-    from tyrefem.reports.figures.style import add_axes, figure, millimetres, temperature_map
+    from tyrefem.reports.raster import COLOURS, png, raster
 
     operators, values = result.tyre.problem.operators, np.asarray(result.history.values[-1])
     corners, _ = triangles(operators)
-    x, y = millimetres(operators.points.T)
+    r, z = operators.points
     low, high = float(values.min()), float(max(values.max(), values.min() + 0.01))
-    across = 2 * np.abs(x).max()
-    height = WIDTH * np.ptp(y) / across
-    colours = temperature_map()
-    with rc_context({"path.simplify": True}):
-        drawn = figure(WIDTH / 100, height / 100)
-        drawn.set_facecolor("none")
-        axes = add_axes(drawn, 0.0, 0.0, WIDTH / 100, height / 100)
-        axes.axis("off")
-        for sign in sides(result.study.section):
-            axes.tripcolor(sign * x, y, corners, values, shading="gouraud", cmap=colours, vmin=low, vmax=high)
-        axes.set_xlim(-across / 2, across / 2)
-        axes.set_ylim(y.min(), y.max())
-        content = _png(drawn)
-    stops = ",".join(
-        "#" + "".join(f"{round(255 * float(part)):02x}" for part in colours(share)[:3])
-        for share in np.linspace(0, 1, 7)
-    )
+    across = 2 * np.abs(z).max()
+    # Two pixels of the picture on one of the page, for fine screens.
+    scale = 2 * WIDTH / across
+    shape = (round(np.ptp(r) * scale), 2 * WIDTH)
+    sides = (1.0, -1.0) if result.study.section.half else (1.0,)
+    points = [np.column_stack([(across / 2 + sign * z) * scale, (r.max() - r) * scale]) for sign in sides]
+    images = [raster(each, corners, values, shape) for each in points]
+    content = png(np.where(np.isnan(images[0]), images[-1], images[0]), low, high)
+    stops = ",".join(f"#{colour}" for colour in COLOURS)
     return (
         f'<img alt="temperatures of the section at {result.times[-1]:g} s" width="{WIDTH}" style="max-width:100%;'
         f'background:none" src="data:image/png;base64,{base64.b64encode(content).decode("ascii")}">'
         f'<div style="display:flex;gap:6px;align-items:center;width:{WIDTH}px;max-width:100%">{low:.1f}'
         f'<div style="flex:1;height:8px;background:linear-gradient(to right,{stops})"></div>{high:.1f} °C</div>'
     )
-
-
-def _png(drawn: Any) -> bytes:
-    stream = io.BytesIO()
-    drawn.savefig(stream, format="png", dpi=100, transparent=True)
-    return stream.getvalue()
 
 
 def histories_picture(result: ResultData) -> str:

@@ -22,7 +22,8 @@ reader.set_active_time_value(reader.time_values[-1])
 half = reader.read()[0]
 plotter = pyvista.Plotter()
 surface = half.clip("z").extract_surface(algorithm="dataset_surface")
-plotter.add_mesh(surface, scalars="temperature_degC", cmap="inferno", lighting=False, scalar_bar_args={"title": "degC"})
+bar = {"title": "degC", "vertical": True}
+plotter.add_mesh(surface, scalars="temperature_degC", cmap="inferno", lighting=False, scalar_bar_args=bar)
 plotter.view_vector((-1, 0.4, -0.8))
 plotter.show()
 
