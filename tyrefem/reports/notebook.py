@@ -39,12 +39,13 @@ def page(thing: Brief, verdict: str, picture: str, *, colour: str = PLAIN, leave
         f'{escape(name)}</th><td style="{cell};white-space:normal">{escape(_text(value))}</td></tr>'
         for name, value in list(facts.items())[:ROWS]
     )
+    table = "border-collapse:collapse;margin:0;border:none;font-size:inherit;color:inherit;flex:1 1 320px"
     return (
         f'<div style="font-size:13px;line-height:1.45;max-width:900px;color:inherit">'
         f'<div style="border-left:4px solid {colour};padding-left:10px;margin-bottom:6px"><strong>{escape(verdict)}'
         f'</strong><br><span style="opacity:.65">{escape(heading_of(thing))}</span></div>'
         f'<div style="display:flex;flex-wrap:wrap;gap:18px;align-items:flex-start"><div>{picture}</div>'
-        f'<table style="border-collapse:collapse;margin:0;border:none;font-size:inherit;color:inherit;flex:1 1 320px">{rows}</table>'
+        f'<table style="{table}">{rows}</table>'
         "</div></div>"
     )
 
