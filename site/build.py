@@ -29,6 +29,8 @@ BUILD = SITE / "_build"
 PAGES = ("CHANGELOG.md", "CONTRIBUTING.md", "tests/README.md", "docs/**/*.md", "studies/*/README.md")
 #: Folders of the site that Sphinx reads as a copy.
 FOLDERS = ("howto", "reference", "about", "static", "templates")
+#: Folders whose files sphinx-gallery runs.
+EXECUTED = ("gallery", "verification")
 LINK = re.compile(r"\]\(([^)\s#:]+)(?:#[^)\s]*)?\)")
 
 
@@ -69,6 +71,12 @@ def assemble(source: Path) -> None:
             shutil.copyfile(file, copy)
     for place in before - {place.as_posix() for place in placed}:
         (source / place).unlink(missing_ok=True)
+    # What sphinx-gallery made of an example that has gone or moved.
+    for name in EXECUTED:
+        for example in (source / name).rglob("*.py"):
+            if not (SITE / example.relative_to(source)).is_file():
+                for made in example.parent.glob(f"{example.stem}.*"):
+                    made.unlink()
     record.write_text("".join(f"{place.as_posix()}\n" for place in sorted(placed)), encoding="utf-8")
 
 

@@ -44,6 +44,7 @@ def start_exporter() -> None:
 
 
 def note_example(_configuration: dict[str, Any], name: str) -> None:
-    """Remember which example runs: tables of references are kept by its name. Forget another's folder of effects."""
-    os.environ.pop("TYREFEM_EFFECTS", None)
+    """Remember which example runs: tables of references are kept by its name. Forget another's plugins."""
+    for variable in ("TYREFEM_EFFECTS", "TYREFEM_PLUGINS"):
+        os.environ.pop(variable, None)
     os.environ["TYREFEM_SITE_EXAMPLE"] = Path(name).stem

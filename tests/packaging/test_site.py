@@ -96,10 +96,20 @@ def test_a_case_says_problem_and_source_and_holds_results_beside_references(case
     assert text.rstrip().endswith("\ntable")
 
 
+def test_every_kind_of_plugin_has_a_page_of_the_gallery() -> None:
+    from tyrefem.contracts import TEMPLATES, template
+
+    texts = [path.read_text(encoding="utf-8") for path in GALLERY if path.parent.name == "6-extend"]
+    for kind, name in TEMPLATES.items():
+        bases = set(re.findall(r"^class \w+\((\w+)\):$", template(kind, name), re.MULTILINE)) - {"Card"}
+        words = [f'template("{kind}"', *(f"({base}):" for base in bases)]
+        assert any(word in text for text in texts for word in words), kind
+
+
 def test_cases_and_examples_have_names_of_their_own() -> None:
     names = Counter(path.stem for path in [*GALLERY, *CASES])
     assert {name for name, count in names.items() if count > 1} == set()
-    assert len(GALLERY) >= 20
+    assert len(GALLERY) >= 24
     assert len(CASES) >= 25
 
 

@@ -6,7 +6,6 @@ The report's tan delta falls exponentially with temperature. Thermally activated
 a folder that you name adds it; the study chooses it by its name. How much colder or warmer is the tyre?
 """
 
-import os
 import tempfile
 from pathlib import Path
 
@@ -52,4 +51,3 @@ assert np.isclose(laws["arrhenius"](25.0), laws["exponential"](25.0))
 warmer = changed.run().peaks["tread"].temperature - study.run().peaks["tread"].temperature
 print(f"the tread is {warmer:.1f} K warmer")
 assert 0.2 < warmer < 5
-del os.environ["TYREFEM_PLUGINS"]
