@@ -44,7 +44,6 @@ extensions = [
     *scraping.EXTENSIONS,
     "mathml",
     "docstrings",
-    "commands",
     "overview",
 ]
 templates_path = ["templates"]

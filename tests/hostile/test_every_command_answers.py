@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 from every_command import Command, commands
@@ -11,8 +13,9 @@ from jsonschema import Draft7Validator
 from jsonschema.exceptions import best_match
 
 from tyrefem.cli import main
-from tyrefem.schemas.answer_schema import answer_of, answers_schema
+from tyrefem.schemas.answer_schema import answer_of, answers_schema, name_of, steps_of
 from tyrefem.schemas.answers import ANSWERS
+from tyrefem.schemas.rows import rows_of
 
 SCHEMA = answers_schema()
 #: Commands that take seconds; the others are tried here too, with ``--json`` alone.
@@ -28,6 +31,26 @@ def checked(command: str, text: str) -> None:
     problems = [best_match(Draft7Validator({**SCHEMA, "anyOf": [{"$ref": f"#/definitions/{name}"}]}).iter_errors(data))
                 for name in names]  # fmt: skip
     assert None in problems, [problem.message for problem in problems if problem]
+    definition = names[problems.index(None)]
+    name = next(name for name in ANSWERS if name_of(name) == definition)
+    for place, keys in rows_of(name).items():
+        if "*" not in keys:
+            there = {key for row in inside(data, steps_of(place)) for key in row}
+            assert there <= {key.removesuffix("*") for key in keys}, f"{name}: keys of {place} without words"
+
+
+def inside(data: Any, steps: list[tuple[str, str]]) -> Iterator[dict[str, Any]]:
+    """The tables at a place of an answer."""
+    if data is None:
+        return
+    if not steps:
+        yield data
+        return
+    (name, ending), *rest = steps
+    below = data.get(name) if name else data
+    several = {"[]": list, "{}": dict.values}.get(ending, lambda each: [each])
+    for each in several(below) if below is not None else []:
+        yield from inside(each, rest)
 
 
 @pytest.mark.parametrize("command", commands(), ids=lambda command: command.name)

@@ -7,6 +7,7 @@ from typing import Any
 
 from tyrefem.schemas.answers import ANSWERS, Keys
 from tyrefem.schemas.draft import DRAFT, Schema
+from tyrefem.schemas.rows import rows_of
 
 TYPES: dict[str, Any] = {
     "text": "string", "number": "number", "integer": "integer", "truth": "boolean", "list": "array", "table": "object",
@@ -40,8 +41,33 @@ def parts_of(line: str) -> tuple[str, bool, str]:
     return kind.removesuffix("?"), kind.endswith("?"), words
 
 
-def answer_schema(keys: Keys) -> Schema:
-    """The schema of one command's answer."""
+def answer_schema(command: str) -> Schema:
+    """The schema of one command's answer; rows and tables inside it may have further keys."""
+    keys = ANSWERS[command]
+    schema = {**_table(keys), "additionalProperties": "*" in keys}
+    for place, inner in rows_of(command).items():
+        entry = schema
+        for name, ending in steps_of(place):
+            if name:
+                entry = entry.setdefault("properties", {}).setdefault(name, {})
+            if ending:
+                kind = "items" if ending == "[]" else "additionalProperties"
+                entry = entry.setdefault(kind, {})
+        # What is known already, null among it, stays.
+        entry |= {**_table(inner), **entry}
+    return schema
+
+
+def steps_of(place: str) -> list[tuple[str, str]]:
+    """Names of a place inside an answer, each with ``[]``, ``{}`` or nothing after it.
+
+    >>> steps_of("sweep.main_effects{}[]")
+    [('sweep', ''), ('main_effects', '{}'), ('', '[]')]
+    """
+    return [(name, ending) for name, ending in re.findall(r"\.?(\w*)(\[\]|\{\})?", place) if name or ending]
+
+
+def _table(keys: Keys) -> Schema:
     properties, required = {}, []
     for key, line in keys.items():
         if key == "*":
@@ -54,12 +80,12 @@ def answer_schema(keys: Keys) -> Schema:
             entry["type"] = [TYPES[kind], "null"] if nullable else TYPES[kind]
         properties[key.removesuffix("*")] = entry
         required += [] if key.endswith("*") else [key]
-    return {"type": "object", "properties": properties, "required": required, "additionalProperties": "*" in keys}
+    return {"type": "object", "properties": properties, "required": required}
 
 
 def answers_schema() -> Schema:
     """One schema with the answer of every command among its definitions: ``#/definitions/run``."""
-    definitions = {_name(command): answer_schema(keys) for command, keys in ANSWERS.items()}
+    definitions = {name_of(command): answer_schema(command) for command in ANSWERS}
     words = "The answer of a command stands under #/definitions/COMMAND, with '-' for spaces. docs/commands.md"
     return {
         "$schema": DRAFT,
@@ -70,10 +96,15 @@ def answers_schema() -> Schema:
     }
 
 
-def _name(command: str) -> str:
+def name_of(command: str) -> str:
+    """The definition of a command's answer.
+
+    >>> name_of("press --critical-speed")
+    'press-critical-speed'
+    """
     return re.sub(r"\W+", "-", command).strip("-")
 
 
 def answer_of(command: str) -> tuple[str, ...]:
     """Names of the definitions of a command's answers: the usual one, and those of other questions to it."""
-    return tuple(_name(name) for name in ANSWERS if name == command or re.match(rf"{command} [(-]", name))
+    return tuple(name_of(name) for name in ANSWERS if name == command or re.match(rf"{command} [(-]", name))
