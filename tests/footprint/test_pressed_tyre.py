@@ -48,6 +48,14 @@ def test_the_revolved_tyre_is_whole_and_not_folded(pressed: Pressed, grid: pyvis
     assert surface.n_points - surface.extract_all_edges().n_cells + surface.n_cells == 0
 
 
+def test_the_axes_turn_and_do_not_mirror(pressed: Pressed) -> None:
+    """Forward, down and left are right-handed; so are their images in the file, x axial, y up and z forward."""
+    forward, down, left = RevolvedTyre(pressed).in_space(np.eye(3)).T
+    assert np.linalg.det(np.stack([forward, down, left])) == pytest.approx(1)
+    assert left.tolist() == [1, 0, 0]
+    assert forward.tolist() == [0, 0, 1]
+
+
 def test_the_flat_is_flat_and_carries_the_load(pressed: Pressed, grid: pyvista.UnstructuredGrid) -> None:
     """Where pressure acts the tread lies on the road; pressure times the area's projection is the load."""
     touching = grid["contact_pressure_Pa"] > 0

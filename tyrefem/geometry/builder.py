@@ -18,6 +18,7 @@ from tyrefem.geometry.layup import Layup
 from tyrefem.geometry.meridian import Line, TwoArcs
 from tyrefem.geometry.section import GROOVE, Section
 from tyrefem.geometry.spline import SplineLine
+from tyrefem.geometry.tread_pattern import TreadPattern
 from tyrefem.library import load as load_card
 
 
@@ -182,6 +183,7 @@ def _section(card: SectionCard, name: str, half: bool, line: Line) -> Section:
         flange_radius=card.parameters.flange_radius,
         flange_centre=_flange_centre(card),
         wrap=card.wrap.region if card.wrap else None,
+        pattern=TreadPattern(card.pattern.void, card.pattern.block_length) if card.pattern else None,
         groove_boundary=card.grooves.boundary if card.grooves else "outside_air",
     )
     try:

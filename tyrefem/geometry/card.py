@@ -145,6 +145,18 @@ class GroovesCard(Card):
     source: Text
 
 
+class PatternCard(Card):
+    """Transverse grooves and sipes through the outermost layer, smeared: they soften it for finite elements.
+
+    ``void`` is the share of the circumference that grooves take, ``block_length`` the rubber between two cuts (groove
+    or sipe) along the circumference.
+    """
+
+    void: Annotated[float, Unit("1", ge=0, le=0.6)] = 0.0
+    block_length: PositiveLength
+    source: Text
+
+
 class WrapCard(Card):
     """The ``region`` in which plies leave the inner layer, cross the other layers and continue in the turn-up."""
 
@@ -182,6 +194,7 @@ class SectionCard(Card):
     layers: Annotated[tuple[LayerCard, ...], Field(min_length=1)]
     boundaries: Annotated[tuple[PartCard, ...], Field(min_length=1)]
     grooves: GroovesCard | None = None
+    pattern: PatternCard | None = None
     wrap: WrapCard | None = None
     rating: RatingCard | None = None
 

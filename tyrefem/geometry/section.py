@@ -18,6 +18,7 @@ from tyrefem.geometry.layer import Division, Layer, Piece, Rating
 from tyrefem.geometry.layup import Layup, Wrap
 from tyrefem.geometry.meridian import Line
 from tyrefem.geometry.plausible import warnings_of
+from tyrefem.geometry.tread_pattern import TreadPattern
 
 Array = NDArray[np.float64]
 #: Name of the material cut out of the outermost layer: no region, not meshed.
@@ -47,6 +48,7 @@ class Section(Brief, PickledFields):
     groove_boundary : boundary of the walls and bottoms of grooves, the parts of the outermost layer named `GROOVE`.
     half : only z >= 0, with the boundary ``symmetry`` at the mid plane.
     wrap : region in which plies run around the bead, across the layers; None: no such region.
+    pattern : transverse grooves and sipes of the outermost layer at the road; None: it has none.
     as_built : the layers before wear, which place the meridian; None: ``layers``.
 
     Raises
@@ -79,6 +81,7 @@ class Section(Brief, PickledFields):
     flange_centre: tuple[float, float] | None = None
     groove_boundary: str = "outside_air"
     wrap: str | None = None
+    pattern: TreadPattern | None = None
 
     def __post_init__(self) -> None:
         _ = self._layup
@@ -131,6 +134,11 @@ class Section(Brief, PickledFields):
             for name, start, end in layer.regions.parts()
             if name != GROOVE
         )
+
+    @property
+    def patterned(self) -> str | None:
+        """The region that `pattern` cuts: the outermost layer's at the crown."""
+        return None if self.pattern is None else next(n for n in self.layers[-1].regions.names if n != GROOVE)
 
     @cached_property
     def grooves(self) -> tuple[tuple[float, float], ...]:

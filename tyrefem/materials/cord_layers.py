@@ -68,9 +68,13 @@ def check_cords_fit(card: MaterialCard, section: Section, region: str) -> None:
 def masses(section: Section, materials: Mapping[str, MaterialCard], temperature: float = 25.0) -> dict[str, float]:
     """Mass of the whole tyre by region [kg]: volume of the ring x density at a temperature (degC).
 
-    The tread has no grooves here.
+    Transverse grooves of a ``[pattern]`` are empty.
     """
-    return {region: volume * materials[region].density.at(temperature) for region, volume in _whole_volumes(section)}
+    left = {} if section.pattern is None else {section.patterned: section.pattern.rubber}
+    return {
+        region: left.get(region, 1.0) * volume * materials[region].density.at(temperature)
+        for region, volume in _whole_volumes(section)
+    }
 
 
 @functools.lru_cache(maxsize=32)

@@ -30,7 +30,7 @@ Array = NDArray[Any]
 
 @dataclass(frozen=True, eq=False)
 class RevolvedTyre(RevolvedSection):
-    """Points, cells and fields of the whole pressed tyre: x is axial, y up from the wheel's centre, z backwards."""
+    """Points, cells and fields of the whole pressed tyre: x is axial, y up from the wheel's centre, z forward."""
 
     @cached_property
     def angles(self) -> Array:
@@ -54,9 +54,9 @@ class RevolvedTyre(RevolvedSection):
         return () if self.pressed.loss is None else (self.pressed.loss,)
 
     def in_space(self, places: Array) -> Array:
-        """(3, ...) places (x forward, y down, z along the axis) as (axial, up, backwards)."""
+        """(3, ...) places (x forward, y down, z along the axis) as (axial, up, forward): right-handed."""
         forward, down, axial = places
-        return np.stack([axial, -down, -forward])
+        return np.stack([axial, -down, forward])
 
     @cached_property
     def contact_pressure(self) -> Array:

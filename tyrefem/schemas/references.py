@@ -59,7 +59,7 @@ def section_reference(names: Iterable[str], card: Schema) -> Schema:
     """A section's name or path, a tyre's size, or a table with changes to either."""
     reference = with_changes(names, card, "section")
     changes = partial(card)["properties"]
-    over = {key: changes[key] for key in ("title", "layers", "grooves", "wrap", "boundaries", "rating")}
+    over = {key: changes[key] for key in ("title", "layers", "grooves", "pattern", "wrap", "boundaries", "rating")}
     rim = {**quantity_schema("m", {"gt": 0.0}), "description": "Width of the rim.", "title": "Rim width [m]"}
     load = {**quantity_schema("N", {"gt": 0.0}), "description": "A load that the tyre must carry.", "title": "Load [N]"}
     pressure = {

@@ -18,7 +18,7 @@ NUMBERS = ("rim_width", "load", "pressure")
 #: Names below ``parameters`` that a section's file has and no rule: they are laid over the file.
 _OF_FILE = ("thickness_scale", "inner_volume")
 #: Tables of a section's file that may be laid over.
-_OVER = ("title", "layers", "grooves", "wrap", "boundaries", "rating")
+_OVER = ("title", "layers", "grooves", "pattern", "wrap", "boundaries", "rating")
 _drawn: Cache[Drawn] = Cache(64)
 
 

@@ -164,6 +164,8 @@ class Body(Brief):
             members = self.mesh.subdomains[name]
             part_deformation = deformation[:, :, members]
             rubber = getattr(part.compound, method)(part_deformation)
+            if part.blocks is not None:
+                rubber = rubber + getattr(part.blocks, method)(part_deformation)
             cords = sum((getattr(layer, method)(part_deformation) for layer in part.cords), np.zeros(()))
             total[..., members, :] = rubber + cords
             dissipating[..., members, :] = rubber + part.cord_loss * cords
@@ -175,7 +177,10 @@ class Body(Brief):
         for name, part in self.parts.items():
             if part.cords and part.cord_loss:
                 members = self.mesh.subdomains[name]
-                rubber[..., members, :] = part.compound.tangent(deformation[:, :, members])
+                part_deformation = deformation[:, :, members]
+                rubber[..., members, :] = part.compound.tangent(part_deformation)
+                if part.blocks is not None:
+                    rubber[..., members, :] += part.blocks.tangent(part_deformation)
         return rubber
 
     def energy(self, displacement: Array) -> float:

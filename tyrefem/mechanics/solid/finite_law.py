@@ -15,6 +15,7 @@ from tyrefem.mechanics.solid.compounds import Compound, determinant
 from tyrefem.mechanics.solid.cords import CordLayer
 from tyrefem.mechanics.solid.elements import Indices, Rings
 from tyrefem.mechanics.solid.parts import RegionMaterial
+from tyrefem.mechanics.solid.tread_blocks import TreadBlocks
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -217,7 +218,10 @@ class BodyLaw:
                     )
                     for layer in part.cords
                 )
-                made = group.response(part.compound, cords, tangent)
+                blocks = part.blocks
+                if blocks is not None:
+                    blocks = replace(blocks, normal=blocks.normal[:, inside], missing=blocks.missing[inside][..., None])
+                made = group.response(part.compound, cords, blocks, tangent)
                 stress[some] = made[0].transpose(1, 0, 2, 3)
                 if tangent:
                     tangents[some] = made[1].reshape(9, 9, len(some), q * m).transpose(2, 0, 1, 3)
@@ -246,7 +250,7 @@ class _Group:
     gradient: Array
 
     def response(
-        self, compound: Compound, cords: tuple[CordLayer, ...], precision: type | None
+        self, compound: Compound, cords: tuple[CordLayer, ...], blocks: TreadBlocks | None, precision: type | None
     ) -> tuple[Array, Array, Array]:
         """P (9, e, q, m), A (9, 9, e, q, m) and V (9, e, q, m), times r dA.
 
@@ -254,7 +258,9 @@ class _Group:
 
         P = s F G + h Q + sum W'/l a d,  h = p J - s I1/3,
         A = s 1 G - 2/3 s (F G Q + Q F G) + (p J + 2/9 s I1) Q Q + 4 c^2 W_11 q q - h Q Q (crossed)
-            + sum [(W'' - W'/l)/l^2 a d a d + W'/l 1 d d],  q = F G - I1/3 Q.
+            + sum [(W'' - W'/l)/l^2 a d a d + W'/l 1 d d],  q = F G - I1/3 Q,
+
+        and of blocks, B = a t + c n with a = F n, c = F t:  P = W' B,  A = W'' B B + W' 1 (t n + n t).
         """
         f = _deformation(self.gradient)
         functions = self.rings.linear_functions[self.members]
@@ -291,6 +297,14 @@ class _Group:
                 pull = slope / length * weights / 2
                 stress += (pull * a)[:, None] * d
                 directions.append((a, d, pull, (curvature * weights / 2 - pull) / length**2))
+        bent: tuple[Array, Array, Array] | None = None
+        if blocks is not None:
+            n, t = (np.einsum("ij...,j...->i...", self.inflated, d)[..., None] for d in blocks.directions)
+            a, c = (f[:, 0] * d[0] + f[:, 1] * d[1] + f[:, 2] * d[2] for d in (n, t))
+            moved, stiff = a[:, None] * t + c[:, None] * n, -blocks.missing * weights
+            slope = stiff * (a * c).sum(axis=0)
+            stress += slope * moved
+            bent = moved, stiff, slope * (t[:, None] * n + n[:, None] * t)
         if precision is None:
             return stress.reshape(9, *volume.shape), np.zeros(0), np.zeros(0)
         matrix = self._matrix(q_inverse, direct, pressed, h, precision, matrix)
@@ -304,6 +318,12 @@ class _Group:
             for i in range(3):
                 for j in range(3):
                     diagonal[i, j] = diagonal.get((i, j), np.zeros(())) + pull * (d[i] * d[j])
+        if bent is not None:
+            moved, stiff, initial = bent
+            matrix += (stiff * moved).astype(precision)[:, :, None, None] * moved.astype(precision)
+            for i in range(3):
+                for j in range(3):
+                    diagonal[i, j] = diagonal.get((i, j), np.zeros(())) + initial[i, j]
         for (i, j), value in diagonal.items():
             for k in range(3):
                 matrix[k, i, k, j] += value

@@ -170,7 +170,7 @@ def warm(body: Body, temperature: Any, expansions: Mapping[str, Expansion]) -> W
         thermal[members] = law.stretch(here)
         compound = WarmCompound(**_fields(part.compound), thermal=thermal[members])
         cords = tuple(WarmCords(**_fields(layer), thermal=law.cord_stretch(here)) for layer in part.cords)
-        parts[region] = RegionMaterial(compound, cords, part.cord_loss)
+        parts[region] = RegionMaterial(compound, cords, part.cord_loss, part.blocks)
     if thermal.min() <= 0.5:
         raise InputError("temperatures at which nothing would be left of a region", field="temperature")
     return WarmBody(**{**_fields(body), "parts": parts}, thermal=thermal)

@@ -17,6 +17,7 @@ from tyrefem.mechanics.solid.cords import CordLayer, lifted_angle, lifted_ends
 from tyrefem.mechanics.solid.elements import Rings
 from tyrefem.mechanics.solid.parts import RegionMaterial
 from tyrefem.mechanics.solid.rim import FLANGE_RADIUS, SEAT, on_rim
+from tyrefem.mechanics.solid.tread_blocks import TreadBlocks
 
 if TYPE_CHECKING:
     from tyrefem.geometry.meshing.mesh import TyreMesh
@@ -69,6 +70,9 @@ def reference_density(study: StudyData, body: Body) -> Array:
     density = np.zeros(body.rings.weights.shape)
     for region in body.parts:
         density[body.mesh.subdomains[region]] = study.materials[region].density.at(study.card.drive.initial)
+    section = study.section
+    if section.pattern is not None and section.patterned is not None:
+        density[body.mesh.subdomains[section.patterned]] *= section.pattern.rubber
     return density
 
 
@@ -82,6 +86,11 @@ class _Reader:
         card = self.study.materials[region]
         cords = getattr(card, "cords", None)
         compound = self.compound(card)
+        if region == self.study.section.patterned:
+            if cords is not None:
+                raise InputError("a tread with a pattern has no cords", field="cords")
+            compound, blocks = self.patterned(compound, region)
+            return RegionMaterial(compound, blocks=blocks)
         if cords is not None:
             cord_loss = getattr(cords, "loss_tangent", None) or 0.0
             ratio = cord_loss / max(float(card.loss_tangent(LOSS_TEMPERATURE)), 1e-12)
@@ -105,6 +114,17 @@ class _Reader:
         if modulus is None:
             raise InputError("the card needs 'shear_modulus' or '[elasticity]' for large displacements")
         return neo_hookean(float(modulus.value))
+
+    def patterned(self, compound: Compound, region: str) -> tuple[Compound, TreadBlocks]:
+        """The rubber that transverse grooves leave, and what the bending of its blocks takes off."""
+        pattern, layer = self.study.section.pattern, self.study.section.layers[-1]
+        assert pattern is not None
+        left = pattern.rubber
+        constants = {name: left * getattr(compound, name) for name in ("c10", "c01", "c20", "c30")}
+        compound = Compound(**constants, bulk=left * compound.bulk_modulus)
+        _, (along_r, along_z), s = self._places(region)
+        missing = (1 - pattern.bending(layer.thickness(s))) * compound.shear_modulus
+        return compound, TreadBlocks(np.stack([along_z, -along_r]), missing)
 
     def layer(self, region: str, cords: Any) -> CordLayer:
         points, meridian, s = self._places(region)
