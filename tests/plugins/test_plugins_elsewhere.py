@@ -13,10 +13,14 @@ import numpy as np
 import pytest
 
 import tyrefem as tf
+from tyrefem.diagnose.blind_rates import run_blind
+from tyrefem.diagnose.isolability import isolability
+from tyrefem.effects import catalogue
 from tyrefem.plugins import registry, sent, use
 from tyrefem.variants.answer_store import effects_source, study_digest
+from tyrefem.variants.dask_cluster import Dask
 from tyrefem.variants.plan import plan_of
-from tyrefem.variants.schedulers import Local
+from tyrefem.variants.schedulers import Here, Local
 from tyrefem.variants.task import Bundle, Task, VersionError, bundle, perform, unpacked
 
 Write = Callable[..., Path]
@@ -113,6 +117,36 @@ def test_a_study_takes_its_plugins_to_another_machine(study: tf.Study, tmp_path:
         check=True, cwd="/",
     )  # fmt: skip
     assert float(came.stdout) == perform(task).answers["hottest_degC"]
+
+
+def test_workers_of_a_dask_cluster_have_the_plugins(study: tf.Study) -> None:
+    """Two workers that know no folder of plugins give the answers of this process."""
+    distributed = pytest.importorskip("distributed")
+    vary = {"drive.speed": ("10 mph", "20 mph", 6)}
+    # A nanny sets these before its worker begins.
+    none = {"TYREFEM_PLUGINS": "", "TYREFEM_EFFECTS": "", "OMP_NUM_THREADS": "1"}
+    with (
+        distributed.LocalCluster(
+            n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None, worker_class=distributed.Nanny,
+            env=none,
+        ) as cluster,
+        distributed.Client(cluster) as client,
+    ):  # fmt: skip
+        assert client.run(lambda: os.environ["TYREFEM_PLUGINS"]) == dict.fromkeys(client.nthreads(), "")
+        far = study.sweep(vary, scheduler=Dask(client), reduced="never")
+    assert far.failed == {}
+    here = study.sweep(vary, scheduler=Here(), reduced="never")
+    assert np.array_equal(far.table["hottest_degC"], here.table["hottest_degC"])
+
+
+def test_isolability_and_blind_list_the_plugins(write: Write, tmp_path: Path) -> None:
+    file = write("effect")
+    coarse = {"mesh.size": "14 mm", "mesh.element": "P1", "numerics.tolerance": "1 delta_degC"}
+    others = [name for name in catalogue() if name not in ("lamp", "hot-road")]
+    few = tf.study("example-validation", {**coarse, "diagnosis.exclude": others})
+    for answer in (isolability(few).to_dict(), run_blind(few, 1, 7, tmp_path).to_dict()):
+        (used,) = answer["plugins"]
+        assert (used["kind"], used["name"], used["file"]) == ("effect", "lamp", str(file))
 
 
 def test_the_sender_s_files_go_before_the_worker_s(study: tf.Study, write: Write, folder: Path) -> None:

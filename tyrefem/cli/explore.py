@@ -55,6 +55,7 @@ def explore(
     """
     from tyrefem.api import study as loaded
     from tyrefem.cli.sweep_flags import questions_of_flags
+    from tyrefem.inputs.study_plugins import plugin_summary
     from tyrefem.realtime.box_model import NEEDS
     from tyrefem.reports.explore import described, write_page
     from tyrefem.variants.schedulers import Here, Local
@@ -83,7 +84,15 @@ def explore(
         tick("page", 0, 1)
         write_page(model, path)
     keyed = [number.key for number in model.plan.varied]
-    answer_with({"file": str(path), "numbers": keyed, "modes": model.reduced.size, **vars(model.certificate)})
+    answer_with(
+        {
+            "file": path,
+            "numbers": keyed,
+            "modes": model.reduced.size,
+            **vars(model.certificate),
+            **plugin_summary(chosen),
+        }
+    )
     for line in described(model):
         say(line)
     say(f"wrote {path} ({path.stat().st_size / 1e6:.1f} MB): open it in a browser")

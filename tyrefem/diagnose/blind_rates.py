@@ -43,6 +43,7 @@ from tyrefem.diagnose.isolability import candidates_of, layout_notes, planned
 from tyrefem.diagnose.sensitivities import responses, unknowns_of
 from tyrefem.errors import InputError, nearest
 from tyrefem.inputs.study import StudyData
+from tyrefem.inputs.study_plugins import plugin_summary
 from tyrefem.interruption import interruption_delayed, keeping
 from tyrefem.output import atomic_path, jsonable
 from tyrefem.processes import processes
@@ -60,7 +61,7 @@ class Blind:
     """Finished cases of a blind test and their rates.
 
     ``notes``: sentences on sensors and runs that the study lacks. ``mesh``: mesh of the synthetic data; ``data_model``:
-    their model, of `tyrefem.diagnose.blind.DATA_MODELS`.
+    their model, of `tyrefem.diagnose.blind.DATA_MODELS`. ``plugins``: own effects and laws that took part.
     """
 
     study: str
@@ -69,6 +70,7 @@ class Blind:
     notes: tuple[str, ...] = ()
     mesh: Mapping[str, Any] = field(default_factory=dict)
     data_model: str = ORDINARY
+    plugins: tuple[dict[str, str], ...] = ()
 
     @cached_property
     def rates(self) -> dict[str, Rate]:
@@ -114,6 +116,7 @@ class Blind:
             "by_effect": self.by_effect,
             "failures": self.failures,
             "notes": list(self.notes),
+            "plugins": list(self.plugins),
         }
 
     def words(self) -> list[str]:
@@ -257,7 +260,9 @@ def run_blind(
         if not any(drive.hold_out for drive in drives):
             notes += ("No run is held out, so the rates do not cover runs that were not fitted.",)
     progress.clear()
-    return Blind(study.name, seed, tuple(rows[number] for number in sorted(rows)), notes, mesh, data_model)
+    used = plugin_summary(study, [candidate.name for candidate in candidates])["plugins"]
+    rows_in_order = tuple(rows[number] for number in sorted(rows))
+    return Blind(study.name, seed, rows_in_order, notes, mesh, data_model, tuple(used))
 
 
 def _answers(test: BlindTest, numbers: Sequence[int], workers: int) -> Iterable[tuple[int, Row]]:

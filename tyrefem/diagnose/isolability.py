@@ -22,6 +22,7 @@ from tyrefem.diagnose.sampling import DriveSampling, SensorSampling
 from tyrefem.diagnose.sensitivities import Sensitivities, responses, sensitivities, unknowns_of
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
+from tyrefem.inputs.study_plugins import plugin_summary
 from tyrefem.quantity import convert
 from tyrefem.requirements import Requirements
 
@@ -93,6 +94,7 @@ class Isolability:
     scale : (n,) prior sd of the amplitude. competitors : (n,) the set that needs the largest amplitude to rule out.
     separation : (n, n) nats by which effect i at its scale is ahead of effect j fitted to the same data.
     runs : smallest sufficient sets of runs. notes : sentences on sensors and runs that the study lacks.
+    plugins : the user's own effects and laws that take part, as in a ``summary.json``.
     """
 
     study: str
@@ -105,6 +107,7 @@ class Isolability:
     runs: tuple[tuple[str, ...], ...]
     weights: Array
     notes: tuple[str, ...] = ()
+    plugins: tuple[dict[str, str], ...] = ()
 
     @cached_property
     def table(self) -> pd.DataFrame:
@@ -166,6 +169,7 @@ class Isolability:
             "fewest_runs": [list(runs) for runs in self.runs],
             "apart_nats": self.separation.round(2).tolist(),
             "notes": list(self.notes),
+            "plugins": list(self.plugins),
         }
 
     def words(self) -> list[str]:
@@ -264,6 +268,7 @@ def isolability(
         runs,
         shares,
         layout_notes(study),
+        tuple(plugin_summary(study, [candidate.name for candidate in candidates])["plugins"]),
     )
 
 

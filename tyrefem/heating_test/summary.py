@@ -10,6 +10,7 @@ from tyrefem.heating_test.parameters import PROPERTY
 from tyrefem.heating_test.selection import COVERAGE
 from tyrefem.heating_test.verdict import sentences
 from tyrefem.output import versions
+from tyrefem.plugins.named import named_plugins, rows_of_plugins
 
 if TYPE_CHECKING:
     from tyrefem.heating_test.identification import IdentificationData
@@ -62,6 +63,7 @@ def summary(identification: IdentificationData) -> dict[str, Any]:
         ],
         "solutions": identification.fit.solutions,
         "versions": versions(),
+        "plugins": rows_of_plugins(named_plugins(identification.card.model_dump())),
     }
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from tyrefem.cards import Card
 from tyrefem.plugins import Plugin, registry
+from tyrefem.plugins.named import named_plugins, rows_of_plugins
 
 if TYPE_CHECKING:
     from tyrefem.inputs.study import StudyData
@@ -37,33 +38,10 @@ def _cards(value: Any) -> Iterator[Card]:
             yield from _cards(entry)
 
 
-def named_plugins(value: Any) -> set[Plugin]:
-    """The plugins whose names are among the texts of plain data, such as the changes of variants."""
-    loaded = registry()
-    if not loaded.plugins:
-        return set()
-    texts = set(_texts(value))
-    return {plugin for plugin in loaded.plugins if plugin.name.split(".")[-1] in texts}
-
-
-def _texts(value: Any) -> Iterator[str]:
-    if isinstance(value, str):
-        yield value
-    elif isinstance(value, Mapping):
-        for key, entry in value.items():
-            yield from _texts(key)
-            yield from _texts(entry)
-    elif isinstance(value, tuple | list):
-        for entry in value:
-            yield from _texts(entry)
-
-
 def plugin_summary(study: StudyData | None, *also: Any) -> dict[str, Any]:
     """``plugins`` of a ``summary.json``: kind, name, class, file or package, version and digest of each plugin used.
 
     ``also``: plain data that may name more of them. ``study``: None, where the data are all.
     """
     used = {*(plugins_of(study) if study is not None else ()), *named_plugins(list(also))}
-    return {
-        "plugins": [plugin.to_dict() for plugin in sorted(used, key=lambda plugin: (plugin.kind.name, plugin.name))]
-    }
+    return {"plugins": rows_of_plugins(used)}

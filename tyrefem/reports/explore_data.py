@@ -10,6 +10,7 @@ import numpy as np
 
 from tyrefem.errors import InputError
 from tyrefem.inputs.changes import all_changed
+from tyrefem.inputs.study_plugins import plugin_summary
 from tyrefem.output import jsonable, versions
 from tyrefem.quantity import parse
 from tyrefem.realtime.tyre import GAMMA, PHI, PHI_2
@@ -31,6 +32,7 @@ def page_data(model: BoxModel) -> dict[str, Any]:
         "argument": argument(study),
         "title": study.title,
         "versions": versions(),
+        **plugin_summary(study),
         "constants": {"GAMMA": GAMMA, "PHI": PHI, "PHI_2": PHI_2},
         "about": {key: about[key] for key in ("read", "heat", "lost", "factors", "hot")},
         "arrays": {name: packed(values) for name, values in model.arrays.items() if name != "turn"},

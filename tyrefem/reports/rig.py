@@ -15,6 +15,7 @@ from tyrefem.heating_test.summary import diffusivities, ranked, summary
 from tyrefem.heating_test.verdict import name_in_words, sentences
 from tyrefem.interruption import keeping
 from tyrefem.output import atomic_folder, jsonable, versions
+from tyrefem.plugins.named import named_plugins, rows_of_plugins
 from tyrefem.reports.figures.style import png
 from tyrefem.reports.rig_figures import heated_patch, histories, layers_figure, pictures, references
 
@@ -146,6 +147,7 @@ def write_simulation(done: Simulation, folder: Path) -> Path:
         },
         "words": list(done.words),
         "versions": versions(),
+        "plugins": rows_of_plugins(named_plugins(done.card.model_dump())),
     }
     with atomic_folder(folder) as place:
         for name, run in done.runs.items():
@@ -176,7 +178,11 @@ def save_layer_table(done: LayerStudy, folder: Path, *, complete: bool = True) -
     table = done.table()
     with atomic_folder(folder) as place:
         table.to_csv(place / "layers.csv", index=False)
-        rows = {"complete": complete, "rows": table.to_dict("records"), "versions": versions()}
+        used = {plugin for fit in done.fits for plugin in named_plugins(fit.card.model_dump())}
+        rows = {
+            "complete": complete, "rows": table.to_dict("records"), "versions": versions(),
+            "plugins": rows_of_plugins(used),
+        }  # fmt: skip
         put_json(place / "summary.json", rows)
     return folder
 

@@ -125,6 +125,7 @@ ANSWERS: dict[str, Keys] = {
         "effects": "list: From which amplitude each effect is seen and told from others.",
         "groups": "list: Effects that look alike.", "fewest_runs": "list: Runs that tell as much as all.",
         "apart_nats": "list: Evidence between each two effects.", "notes": "list: What to know.",
+        "plugins": "list: Your own effects and laws that took part.",
         "calibration*": "table: Coverage of stated probabilities in quick cases.",
     },
     "blind": {
@@ -134,7 +135,7 @@ ANSWERS: dict[str, Keys] = {
         "rates": "table: How often the diagnosis is right, with intervals.",
         "reliability": "list: Stated probabilities and how often they held.",
         "by_effect": "list: Cases by effect.", "failures": "list: Cases without a verdict.",
-        "notes": "list: What to know.",
+        "notes": "list: What to know.", "plugins": "list: Your own effects and laws that took part.",
     },
     "sweep": {
         **_STUDY, **_FOLDER, **_VERSIONS, **_WORDS, **_MESH,
@@ -162,6 +163,7 @@ ANSWERS: dict[str, Keys] = {
         "cases": "integer: Number of fresh full runs.",
         "trained_on": "integer: Number of runs and corrections of the training.",
         "products": "table: Largest relative error of the parts as products of the numbers.",
+        "plugins": "list: Your own effects and laws in the study.",
     },
     "press": {
         **_STUDY, **_WHEEL, **_VERSIONS, **_MESH,
