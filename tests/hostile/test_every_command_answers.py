@@ -13,6 +13,7 @@ from jsonschema import Draft7Validator
 from jsonschema.exceptions import best_match
 
 from tyrefem.cli import main
+from tyrefem.contracts import template
 from tyrefem.schemas.answer_schema import answer_of, answers_schema, name_of, steps_of
 from tyrefem.schemas.answers import ANSWERS
 from tyrefem.schemas.rows import rows_of
@@ -108,6 +109,24 @@ def test_other_questions_to_a_command_are_documented_too(here: Path, capfd: pyte
     (here / "campaign.toml").write_text('cases = "cases.csv"\n' + text, encoding="utf-8")
     assert main(["run", "campaign.toml", "--out", "cases", "--json", "--no-pictures", "--no-vtk"]) == 0
     checked("run", capfd.readouterr().out)
+
+
+def test_every_command_lists_the_plugins_that_take_part(
+    here: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for kind, name in (("effect", "lamp"), ("boundary-law", "power-film")):
+        (here / "plugins").mkdir(exist_ok=True)
+        (here / "plugins" / f"{kind}.py").write_text(template(kind, name), encoding="utf-8")
+    monkeypatch.setenv("TYREFEM_PLUGINS", str(here / "plugins"))
+    film = 'boundaries.outside_air={law = "power-film", at_10_m_s = "30 W/m**2/K"}'
+    # A lamp is a candidate of every diagnosis, and the film the law of this study.
+    for words, expected in {
+        "isolability": ["power-film", "lamp"], "blind": ["power-film", "lamp"], "explore": ["power-film"],
+    }.items():  # fmt: skip
+        command = next(each for each in commands() if each.words == words)
+        assert main(command.line(command.out(here / "new" / words), "--json", "--set", film)) == 0
+        used = json.loads(capfd.readouterr().out)["plugins"]
+        assert sorted(plugin["name"].split(".")[-1] for plugin in used) == sorted(expected), words
 
 
 def test_no_keys_of_a_command_that_there_is_not() -> None:

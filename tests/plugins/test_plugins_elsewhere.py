@@ -13,9 +13,6 @@ import numpy as np
 import pytest
 
 import tyrefem as tf
-from tyrefem.diagnose.blind_rates import run_blind
-from tyrefem.diagnose.isolability import isolability
-from tyrefem.effects import catalogue
 from tyrefem.plugins import registry, sent, use
 from tyrefem.variants.answer_store import effects_source, study_digest
 from tyrefem.variants.dask_cluster import Dask
@@ -137,16 +134,6 @@ def test_workers_of_a_dask_cluster_have_the_plugins(study: tf.Study) -> None:
     assert far.failed == {}
     here = study.sweep(vary, scheduler=Here(), reduced="never")
     assert np.array_equal(far.table["hottest_degC"], here.table["hottest_degC"])
-
-
-def test_isolability_and_blind_list_the_plugins(write: Write, tmp_path: Path) -> None:
-    file = write("effect")
-    coarse = {"mesh.size": "14 mm", "mesh.element": "P1", "numerics.tolerance": "1 delta_degC"}
-    others = [name for name in catalogue() if name not in ("lamp", "hot-road")]
-    few = tf.study("example-validation", {**coarse, "diagnosis.exclude": others})
-    for answer in (isolability(few).to_dict(), run_blind(few, 1, 7, tmp_path).to_dict()):
-        (used,) = answer["plugins"]
-        assert (used["kind"], used["name"], used["file"]) == ("effect", "lamp", str(file))
 
 
 def test_the_sender_s_files_go_before_the_worker_s(study: tf.Study, write: Write, folder: Path) -> None:
