@@ -19,7 +19,7 @@ from tyrefem.heating_test.card import find
 
 #: In the middle of a simulation, of a picture, of a table.
 STEP = "tyrefem.conduction.balance:HeatBalance.remainder:40"
-PICTURE, TABLE = "matplotlib.figure:Figure.savefig:1", "pandas.core.generic:NDFrame.to_csv:1"
+PICTURE, TABLE = "matplotlib.figure:Figure.savefig:1", "tyrefem.output.csv_table:write_csv:1"
 #: While numpy is loaded, and while Python ends.
 LOADING = "numpy.linalg"
 SPEEDS = ("--vary", "drive.speed=10 mph,20 mph,30 mph", "--set", "mesh.size=12 mm", *SHORT[:2])

@@ -14,7 +14,9 @@ import pytest
 import pyvista
 
 from tyrefem.reports import view3d
+from tyrefem.reports.figures.style import temperature_map
 from tyrefem.reports.grids import pyvista_grid
+from tyrefem.reports.temperature_colours import COLOURS
 from tyrefem.reports.vtk import saved_times, write_series
 from tyrefem.reports.vtu import VtuFile, compressed
 
@@ -244,3 +246,9 @@ def test_the_script_for_paraview_is_python_and_shows_the_files_beside_it(run, tm
     assert values["REGIONS"] == list(run.study.section.regions)
     assert values["TITLE"] == run.study.title
     assert ("Reflect" in ast.unparse(tree)) == run.study.section.half
+
+
+def test_colours_of_the_script_are_those_of_the_pictures() -> None:
+    shown, places = temperature_map(), np.linspace(0.0, 1.0, len(COLOURS))
+    expected = [(place, *shown(place)[:3]) for place in places]
+    assert np.array(COLOURS) == pytest.approx(np.array(expected), abs=6e-5)

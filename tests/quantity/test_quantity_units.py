@@ -14,7 +14,7 @@ from tyrefem.quantity import Unit, convert, parse
 pytestmark = pytest.mark.fast
 
 PAIRS = {
-    "m": ("in", "mm", "ft"),
+    "m": ("in", "mm", "ft", "furlong"),
     "m/s": ("mph", "km/h", "ft/s"),
     "N": ("lbf", "kN"),
     "Pa": ("psi", "bar", "kPa"),

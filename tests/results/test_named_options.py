@@ -37,6 +37,8 @@ def verb(name: str) -> dict[str, Any]:
     return {key: value for key, value in named(getattr(tf.Study, name)).items() if key != "self"}
 
 
+#: Long lists: None stands for the function's.
+LEFT_TO_THE_FUNCTION = {("tyre_forces", name) for name in ("slip_angles", "slips", "cambers")}
 #: Of `wheel_on_road` and `press`, what rolling hands on.
 WHEEL = {**named(roll.wheel_on_road), "pressure": None, "drum_diameter": None}
 OPTIONS: dict[str, Iterable[str]] = {
@@ -72,7 +74,7 @@ def test_a_verb_names_every_option(name: str) -> None:
     ],
 )
 def test_its_defaults_are_those_of_the_function(name: str, function: Callable[..., Any]) -> None:
-    shown = verb(name)
+    shown = {key: value for key, value in verb(name).items() if (name, key) not in LEFT_TO_THE_FUNCTION}
     assert {key: shown[key] for key, value in named(function).items() if key in shown} == {
         key: value for key, value in named(function).items() if key in shown
     }

@@ -5,19 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING
 
-from tyrefem.api.life import Life
-from tyrefem.api.mechanics import ForcesOverSlip, ForceTable, LoadedTyre, NaturalModes, RollingWheel
 from tyrefem.api.verbs import given, with_verbs
-from tyrefem.fatigue import life as lives
 from tyrefem.inputs import study as studies
-from tyrefem.mechanics.footprint import natural_frequencies as vibrations
-from tyrefem.mechanics.footprint import press as presses
-from tyrefem.mechanics.rolling import force_table as force_tables
-from tyrefem.mechanics.rolling import press as rolling_press
-from tyrefem.mechanics.rolling import roll as rolls
-from tyrefem.mechanics.rolling import slip_curve as slip_curves
 
 if TYPE_CHECKING:
+    from tyrefem.api.life import Life
+    from tyrefem.api.mechanics import ForcesOverSlip, ForceTable, LoadedTyre, NaturalModes, RollingWheel
     from tyrefem.fatigue.duty import WarmRun
     from tyrefem.mechanics.rolling.steady_rolling import FrictionLaw
     from tyrefem.wear.drive_wear import DriveWear
@@ -34,7 +27,7 @@ class StudyMechanics(studies.StudyData):
         deflection: float | None = None,
         drum_diameter: float | None = None,
         camber: float = 0.0,
-        tolerance: float = presses.TOLERANCE,
+        tolerance: float = 0.02,
         motion: str | None = None,
         speed: float | None = None,
     ) -> LoadedTyre:
@@ -53,7 +46,10 @@ class StudyMechanics(studies.StudyData):
         >>> tyre.footprint.motion, 5e3 < tyre.footprint.load < 9e3
         ('linear', True)
         """
-        data = rolling_press.press(
+        from tyrefem.api.mechanics import LoadedTyre
+        from tyrefem.mechanics.rolling.press import press
+
+        data = press(
             self, pressure=pressure, load=load, deflection=deflection, drum_diameter=drum_diameter, camber=camber,
             tolerance=tolerance, motion=motion, speed=speed,
         )  # fmt: skip
@@ -75,7 +71,7 @@ class StudyMechanics(studies.StudyData):
         deflection: float | None = None,
         drum_diameter: float | None = None,
         motion: str = "linear",
-        tolerance: float = rolls.TOLERANCE,
+        tolerance: float = 0.05,
     ) -> RollingWheel:
         """Roll the tyre steadily with friction: forces, moments, slip, friction power by ring of the tread.
 
@@ -94,8 +90,11 @@ class StudyMechanics(studies.StudyData):
         >>> rolled.state.force[0] > 0 and rolled.state.torque > 0
         True
         """
+        from tyrefem.api.mechanics import RollingWheel
+        from tyrefem.mechanics.rolling.roll import roll
+
         wheel = given(pressure=pressure, drum_diameter=drum_diameter)
-        data = rolls.roll(
+        data = roll(
             self, slip_angle=slip_angle, slip=slip, torque=torque, axle_force=axle_force, turn_slip=turn_slip,
             tolerance=tolerance, camber=camber, friction=friction, speed=speed, load=load, deflection=deflection,
             motion=motion, **wheel,
@@ -129,14 +128,17 @@ class StudyMechanics(studies.StudyData):
         deflection: float | None = None,
         drum_diameter: float | None = None,
         motion: str = "linear",
-        tolerance: float = rolls.TOLERANCE,
+        tolerance: float = 0.05,
     ) -> ForcesOverSlip:
         """Forces and moments over several ``slip_angle`` or several ``slip``, with stiffness, trail and peak.
 
         Options as in `roll`; see `tyrefem.mechanics.rolling.slip_curve.slip_curve`.
         """
+        from tyrefem.api.mechanics import ForcesOverSlip
+        from tyrefem.mechanics.rolling.slip_curve import slip_curve
+
         wheel = given(pressure=pressure, drum_diameter=drum_diameter)
-        data = slip_curves.slip_curve(
+        data = slip_curve(
             self, slip_angle=slip_angle, slip=slip, torque=torque, axle_force=axle_force, turn_slip=turn_slip,
             tolerance=tolerance, camber=camber, friction=friction, speed=speed, load=load, deflection=deflection,
             motion=motion, **wheel,
@@ -147,36 +149,41 @@ class StudyMechanics(studies.StudyData):
         self,
         *,
         loads: Sequence[float] | None = None,
-        slip_angles: Sequence[float] = force_tables.SLIP_ANGLES,
-        slips: Sequence[float] = force_tables.SLIPS,
-        cambers: Sequence[float] = force_tables.CAMBERS,
+        slip_angles: Sequence[float] | None = None,
+        slips: Sequence[float] | None = None,
+        cambers: Sequence[float] | None = None,
         friction: float | FrictionLaw | None = None,
         speed: float | None = None,
         pressure: float | None = None,
         drum_diameter: float | None = None,
         motion: str = "linear",
-        harmonics: int = force_tables.MIDDLE,
+        harmonics: int = 80,
         progress: Callable[[float, float], None] | None = None,
     ) -> ForceTable:
-        """Forces at every one of ``loads`` (N), over ``slips``, ``slip_angles`` and ``cambers`` (rad).
+        """Forces at every one of ``loads`` (N), over ``slips``, ``slip_angles`` and ``cambers``, rad; None: usual ones.
 
         ``fit`` of the answer has the coefficients of a Magic Formula; `ForceTable.save` writes them as a ``.tir`` file.
         Other options as in `roll`; see `tyrefem.mechanics.rolling.force_table.tyre_forces`.
         """
-        wheel = given(pressure=pressure, drum_diameter=drum_diameter)
-        data = force_tables.tyre_forces(
-            self, loads=loads, slip_angles=slip_angles, slips=slips, cambers=cambers, harmonics=harmonics,
-            progress=progress, friction=friction, speed=speed, motion=motion, **wheel,
+        from tyrefem.api.mechanics import ForceTable
+        from tyrefem.mechanics.rolling.force_table import tyre_forces
+
+        options = given(
+            slip_angles=slip_angles, slips=slips, cambers=cambers, pressure=pressure, drum_diameter=drum_diameter,
+        )  # fmt: skip
+        data = tyre_forces(
+            self, loads=loads, harmonics=harmonics, progress=progress, friction=friction, speed=speed, motion=motion,
+            **options,
         )  # fmt: skip
         return with_verbs(ForceTable, data)
 
     def natural_frequencies(
         self,
-        harmonics: Iterable[int] = vibrations.HARMONICS,
-        count: int = vibrations.COUNT,
+        harmonics: Iterable[int] = (0, 1, 2, 3, 4, 5),
+        count: int = 2,
         *,
         pressure: float | None = None,
-        amplitude: float = vibrations.AMPLITUDE,
+        amplitude: float = 0.001,
     ) -> NaturalModes:
         """Natural frequencies of the inflated tyre without load and rotation, with its rim held.
 
@@ -187,7 +194,10 @@ class StudyMechanics(studies.StudyData):
         >>> study("nasa-22x5.5-8pr", {"mesh.size": "12 mm"}).natural_frequencies([0], 1).table.name.tolist()
         ['lateral']
         """
-        data = vibrations.natural_frequencies(self, harmonics, count, pressure=pressure, amplitude=amplitude)
+        from tyrefem.api.mechanics import NaturalModes
+        from tyrefem.mechanics.footprint.natural_frequencies import natural_frequencies
+
+        data = natural_frequencies(self, harmonics, count, pressure=pressure, amplitude=amplitude)
         return with_verbs(NaturalModes, data)
 
     def life(
@@ -209,5 +219,8 @@ class StudyMechanics(studies.StudyData):
         >>> len(tyre.places), tyre.left_out
         (10, ('bead',))
         """
-        data = lives.life(self, temperature=temperature, plateau=plateau, result=result, progress=progress)
+        from tyrefem.api.life import Life
+        from tyrefem.fatigue.life import life
+
+        data = life(self, temperature=temperature, plateau=plateau, result=result, progress=progress)
         return with_verbs(Life, data)

@@ -6,16 +6,16 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tyrefem.api.comparison import Comparison
-from tyrefem.api.design import Design
-from tyrefem.api.diagnosis import Diagnosis, ExperimentPlan
-from tyrefem.api.exploration import Exploration
 from tyrefem.api.verbs import given, with_verbs
 from tyrefem.inputs import study as studies
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
 
+    from tyrefem.api.comparison import Comparison
+    from tyrefem.api.design import Design
+    from tyrefem.api.diagnosis import Diagnosis, ExperimentPlan
+    from tyrefem.api.exploration import Exploration
     from tyrefem.compare.interface import ResultLike
     from tyrefem.compare.reduced_inputs import ReducedInputSettings
     from tyrefem.diagnose.candidates import CandidateSpace
@@ -62,6 +62,7 @@ class StudyQuestions(studies.StudyData):
 
         All of them, and the errors: `tyrefem.compare.compare`.
         """
+        from tyrefem.api.comparison import Comparison
         from tyrefem.compare import compare
 
         options = given(settings=settings)
@@ -107,6 +108,7 @@ class StudyQuestions(studies.StudyData):
 
         All of them, and the errors: `tyrefem.diagnose.diagnose`.
         """
+        from tyrefem.api.diagnosis import Diagnosis
         from tyrefem.diagnose import diagnose
 
         options = given(
@@ -149,6 +151,7 @@ class StudyQuestions(studies.StudyData):
         workers, progress, store, settings, known : see `tyrefem.plan.workflow.plan`.
         ignore and all further : as in `diagnose`, for tables.
         """
+        from tyrefem.api.diagnosis import ExperimentPlan
         from tyrefem.plan.workflow import plan
 
         options = given(
@@ -213,6 +216,7 @@ class StudyQuestions(studies.StudyData):
         >>> design.table["feasible"].tolist()
         [True, False]
         """
+        from tyrefem.api.design import Design
         from tyrefem.sweep.design import run_design_study
 
         questions = given(
@@ -251,6 +255,7 @@ class StudyQuestions(studies.StudyData):
         >>> page.certificate.worst < 1.0
         True
         """
+        from tyrefem.api.exploration import Exploration
         from tyrefem.realtime.box_model import explored
 
         data = explored(

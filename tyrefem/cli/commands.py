@@ -1,16 +1,24 @@
-"""The commands, one module each, and the messages of their errors. Heavy imports happen inside the commands."""
+"""The commands, one module each, and the messages of their errors. Heavy imports happen inside the commands.
+
+A process loads the module of its command alone, and for the list of commands no options: both take a tenth of a second.
+"""
 
 from __future__ import annotations
 
+import functools
 import importlib
+import os
 import pkgutil
+import sys
 import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from types import ModuleType
 from typing import Annotated, Any
 
 import typer
+import typer.main
 from typer.core import TyperGroup
 
 import tyrefem
@@ -18,6 +26,9 @@ from tyrefem.cli.shell import all_speak, notify
 from tyrefem.errors import InputError, PluginWarning, ResultWarning
 from tyrefem.estimates.work import LongWorkWarning
 from tyrefem.output import reading
+
+#: The command's name.
+NAME = "tyrefem"
 
 
 class Stopped(BaseException):
@@ -42,24 +53,12 @@ class Commands(TyperGroup):
             raise Stopped from interruption
 
 
-app = typer.Typer(
-    name="tyrefem",
-    cls=Commands,
-    help="Temperatures of a rolling tyre: from its section to a report.",
-    no_args_is_help=True,
-    add_completion=True,
-    pretty_exceptions_enable=False,
-    context_settings={"help_option_names": ["-h", "--help"]},
-)
-
-
 def _version(wanted: bool) -> None:
     if wanted:
         typer.echo(f"tyrefem {tyrefem.__version__}")
         raise typer.Exit
 
 
-@app.callback()
 def _options(
     version: Annotated[
         bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version and stop.")
@@ -68,27 +67,104 @@ def _options(
     """Temperatures of a rolling tyre: from its section to a report."""
 
 
-def _register() -> None:
-    """Register every module of the package that has a ``register``; ``ORDER`` is its place in the help.
+def _empty() -> typer.Typer:
+    made = typer.Typer(
+        name=NAME,
+        cls=Commands,
+        help="Temperatures of a rolling tyre: from its section to a report.",
+        no_args_is_help=True,
+        add_completion=True,
+        pretty_exceptions_enable=False,
+        context_settings={"help_option_names": ["-h", "--help"]},
+    )
+    made.callback()(_options)
+    return made
 
-    Every command gets the options ``--quiet`` and ``--json``.
-    """
+
+def _modules() -> list[ModuleType]:
+    """Every module of the package that has a ``register``; ``ORDER`` is its place in the help."""
     names = [entry.name for entry in pkgutil.iter_modules([str(Path(__file__).parent)]) if entry.name != "commands"]
     modules = [importlib.import_module(f"{__package__}.{name}") for name in names]
-    commands = [module for module in modules if hasattr(module, "register")]
-    for module in sorted(commands, key=lambda module: module.ORDER):
-        module.register(app)
-    all_speak(app)
+    return sorted((module for module in modules if hasattr(module, "register")), key=lambda module: module.ORDER)
 
 
-_register()
+def _application(modules: Iterable[ModuleType]) -> typer.Typer:
+    """The commands of some modules, each with the options ``--quiet`` and ``--json``."""
+    made = _empty()
+    for module in modules:
+        module.register(made)
+    all_speak(made)
+    return made
+
+
+@functools.cache
+def whole() -> typer.Typer:
+    """The application with all its commands."""
+    return _application(_modules())
+
+
+def __getattr__(name: str) -> Any:
+    if name != "app":
+        raise AttributeError(f"module 'tyrefem.cli.commands' has no attribute '{name}'")
+    return whole()
+
+
+@functools.cache
+def _all_commands() -> Any:
+    return typer.main.get_command(whole())
+
+
+@functools.cache
+def _listed() -> Any:
+    """All commands without their options and parts: for the list of commands."""
+    registered, bare = _empty(), _empty()
+    for module in _modules():
+        module.register(registered)
+    for command in registered.registered_commands:
+        bare.command(command.name)(_described(command.callback))
+    for group in registered.registered_groups:
+        assert group.typer_instance is not None
+        bare.add_typer(typer.Typer(name=group.typer_instance.info.name, help=group.typer_instance.info.help))
+    return typer.main.get_command(bare)
+
+
+def _described(command: Callable[..., Any] | None) -> Callable[[], None]:
+    def described() -> None:
+        """Do nothing."""
+
+    described.__name__, described.__doc__ = command.__name__, command.__doc__  # type: ignore[union-attr]
+    return described
+
+
+@functools.lru_cache(maxsize=64)
+def _single(name: str) -> Any | None:
+    """The application with the command of that name alone, from the module of that name; None: no such module."""
+    module = name.replace("-", "_")
+    if not module.isidentifier() or not (Path(__file__).parent / f"{module}.py").is_file():
+        return None
+    loaded = importlib.import_module(f"{__package__}.{module}")
+    if not hasattr(loaded, "register"):
+        return None
+    made = typer.main.get_command(_application([loaded]))
+    return made if name in made.commands else None  # type: ignore[attr-defined]
+
+
+def _command(arguments: list[str]) -> Any:
+    """The commands that a command line needs."""
+    if any(name.startswith("_TYREFEM_COMPLETE") for name in os.environ):
+        return _all_commands()
+    if arguments in ([], ["-h"], ["--help"]):
+        return _listed()
+    single = _single(arguments[0])
+    return _all_commands() if single is None else single
 
 
 def run_command_line(arguments: list[str] | None) -> tuple[object, int]:
     """Run a command line; return its last line, or None, and its exit code."""
     try:
         with reading(), _warnings_shown():
-            code = app(args=arguments, prog_name=app.info.name, standalone_mode=False)
+            given = sys.argv[1:] if arguments is None else arguments
+            code = _command(given)(args=given, prog_name=NAME, standalone_mode=False)
     except InputError as error:
         return error, 2
     except OSError as error:
@@ -134,5 +210,5 @@ def _handled_error(error: Exception) -> tuple[object, int]:
         typer.echo(message())
         return None, code
     context = getattr(error, "ctx", None)
-    command = context.command_path if context is not None else app.info.name
+    command = context.command_path if context is not None else NAME
     return f"{message()} (see '{command} --help')", code

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
-from concurrent.futures import Executor
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -27,7 +26,9 @@ from tyrefem.cli.progress import progress
 from tyrefem.cli.shell import answer_with, notify, say
 from tyrefem.interruption import keeping
 from tyrefem.output.folder import results_folder
-from tyrefem.processes import processes
+
+if TYPE_CHECKING:
+    from concurrent.futures import Executor
 
 
 def compare(
@@ -100,6 +101,8 @@ def _side_by_side(count: int) -> Iterator[Executor | None]:
     if count < 2:
         yield None
         return
+    from tyrefem.processes import processes
+
     with processes(count) as executor:
         yield executor
 

@@ -90,7 +90,7 @@ def _single(study: Study, folder: Path, pictures: bool, vtk: bool, revolved: boo
 
 
 def _words(result: Result) -> str:
-    peak, region = result.extremes.iloc[0], result.summary()["hottest"]["region"]
+    peak, region = result.extreme_rows[0], result.summary()["hottest"]["region"]
     from tyrefem.reports.run_files import loaded_cycle, of_run
     from tyrefem.reports.words import motion_words, phase_lines
 
@@ -99,8 +99,8 @@ def _words(result: Result) -> str:
     during = f", end of {resistance.phase}" if len(result.phases) > 1 and resistance.phase else ""
     lines = [
         result.study.title,
-        f"  hottest point       {peak.temperature_degC:7.1f} degC in the {region}, {peak.s_m * 1e3:.0f} mm along the "
-        f"meridian, {peak.depth_m * 1e3:.1f} mm deep, at {peak.time_s:.0f} s",
+        f"  hottest point       {peak['temperature_degC']:7.1f} degC in the {region}, {peak['s_m'] * 1e3:.0f} mm along "
+        f"the meridian, {peak['depth_m'] * 1e3:.1f} mm deep, at {peak['time_s']:.0f} s",
         f"  rolling resistance  {resistance.force:7.1f} N, coefficient {resistance.coefficient:.4f} "
         f"(cold {resistance.cold_force:.1f} N, {resistance.cold_coefficient:.4f}){during}",
         f"  contained air       {result.gas_temperature[-1]:7.1f} degC, {result.gas_pressure[-1] / 1e3:.0f} kPa gauge",

@@ -78,7 +78,9 @@ def answer_with(data: Mapping[str, Any] | Path) -> None:
 
 
 def speaking(command: Callable[..., Any]) -> Callable[..., Any]:
-    """A command with the options ``--quiet`` and ``--json``."""
+    """A command with the options ``--quiet`` and ``--json``; one that has them stays as it is."""
+    if hasattr(command, "speaks"):
+        return command
     given = inspect.signature(command)
     hints = get_type_hints(command, include_extras=True)
     usual = [part.replace(annotation=hints.get(part.name, part.annotation)) for part in given.parameters.values()]
@@ -99,6 +101,7 @@ def speaking(command: Callable[..., Any]) -> Callable[..., Any]:
     ]
     spoken.__signature__ = given.replace(parameters=[*usual, *added])  # type: ignore[attr-defined]
     spoken.__annotations__ = {**hints, **options}
+    spoken.speaks = True  # type: ignore[attr-defined]
     return spoken
 
 

@@ -5,7 +5,6 @@ The package is independent of the content of the files.
 
 from __future__ import annotations
 
-import importlib.metadata
 import json
 import math
 import os
@@ -24,6 +23,8 @@ from tyrefem.interruption import interruption_delayed
 
 def versions() -> dict[str, str]:
     """Versions of this package, of Python and of the libraries that influence the results."""
+    import importlib.metadata
+
     packages = {"tyrefem": tyrefem.__version__, "python": platform.python_version()}
     return packages | {name: importlib.metadata.version(name) for name in ("numpy", "scipy", "scikit-fem", "pint")}
 

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tyrefem.errors import InputError
+from tyrefem.quantity.factors import FACTORS, TEMPERATURES
 
 if TYPE_CHECKING:
     import pint
@@ -89,10 +90,26 @@ def _parse(value: object, unit: str) -> float:
         if unit != "1":
             raise InputError(f"{value!r} has no unit; expected {wanted}")
         return magnitude
-    result = _convert(magnitude, text, unit, value, wanted)
+    usual = _usual(magnitude, text, unit)
+    result = _convert(magnitude, text, unit, value, wanted) if usual is None else usual
     if not math.isfinite(result):
         raise InputError(f"{value!r} is too large to be a number; expected {wanted}")
+    if unit == "degC":
+        if result < -273.15 - 1e-9:
+            raise InputError(f"{value!r} is below absolute zero")
+        return round(result, 10)
     return result
+
+
+def _usual(magnitude: float, text: str, unit: str) -> float | None:
+    """The value of a quantity in a usual unit, without pint; None: another unit."""
+    if unit == "degC":
+        factor, offset = TEMPERATURES.get(text, (None, 0.0))
+    else:
+        factor, offset = FACTORS.get(unit, {}).get(text), 0.0
+    if factor is None:
+        return None
+    return offset + factor * magnitude
 
 
 def _split(value: object, unit: str, wanted: str) -> tuple[float, str]:
@@ -167,14 +184,9 @@ def _convert(magnitude: float, text: str, unit: str, value: object, wanted: str)
     if unit == "degC" and "delta" in given:
         raise InputError(f"{value!r} is a difference of temperatures, but a temperature is wanted: 'degC'")
     try:
-        result = _converted(magnitude, text, unit)
+        return _converted(magnitude, text, unit)
     except Exception as error:  # dimensionality or offset units: the same advice to the user
         raise InputError(f"'{text}' is not a unit of this quantity ({value!r}); expected {wanted}") from error
-    if unit == "degC":
-        if result < -273.15 - 1e-9:
-            raise InputError(f"{value!r} is below absolute zero")
-        return round(result, 10)
-    return result
 
 
 @functools.lru_cache(maxsize=512)

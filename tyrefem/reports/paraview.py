@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tyrefem.reports.temperature_colours import COLOURS
+
 if TYPE_CHECKING:
     from tyrefem.simulation.result import ResultData
 
-#: Colours in ParaView's map.
-COLOURS = 33
 _TEMPLATE = '''"""ParaView shows {title} at once.
 
     paraview --script={name}.py       in the window; press play
@@ -110,12 +110,8 @@ def script(result: ResultData, stem: str, saved: Sequence[int], *, solid: bool) 
 
     ``saved``: numbers of the readings in it; ``solid``: a ring, not the section.
     """
-    from tyrefem.reports.figures.style import temperature_map
-
     values = np.asarray(result.history.values)[list(saved)]
     low, high = float(values.min()), float(values.max())
-    places = np.linspace(0.0, 1.0, COLOURS)
-    colours = [[round(float(x), 4) for x in (place, *temperature_map()(place)[:3])] for place in places]
     steps = [_MIRROR] if result.study.section.half else []
     if solid:
         steps.append(_OPENED)
@@ -131,7 +127,7 @@ def script(result: ResultData, stem: str, saved: Sequence[int], *, solid: bool) 
         low=round(low, 2),
         high=round(max(high, low + 0.01), 2),
         regions=json.dumps(list(result.study.section.regions)),
-        colours=json.dumps(colours),
+        colours=json.dumps(COLOURS),
         steps="\n".join(steps),
         clock='"{time:.0f} s"',
         camera=camera,

@@ -204,23 +204,23 @@ def _drag(result: ResultData, phase: PhaseState) -> str:
 
 
 def _sensors(result: ResultData) -> Rows:
-    section, readings = result.study.section, result.readings
-    gradients = result.gradient_at_sensors
+    section, readings = result.study.section, result.reading_columns
+    gradients = result.sensor_gradients
     times, rows = result.times, []
     for name, (r, z) in result.sensor_places.items():
         s, depth = (float(np.ravel(v)[0]) for v in section.locate(np.array([[r, z]])))
-        values = readings[name].to_numpy()
+        values = readings[name]
         hottest = int(np.argmax(values))
         rows.append(
             [
                 name, str(section.region_at(s, depth)), place(section, s, depth),
                 f"{s * 1e3:.1f}", f"{depth * 1e3:.1f}",
                 f"{values[-1]:.1f}", f"{values[hottest]:.1f}", number(times[hottest]),
-                f"{gradients[name].iloc[-1] / 1e3:.2f}",
+                f"{gradients[name][-1] / 1e3:.2f}",
             ]
         )  # fmt: skip
-    for name in [column for column in readings.columns if column not in ("time_s", *result.sensor_places)]:
-        values = readings[name].to_numpy()
+    for name in [column for column in readings if column not in ("time_s", *result.sensor_places)]:
+        values = readings[name]
         hottest = int(np.argmax(values))
         rows.append([name.replace("-", " "), "–", "lumped: one temperature", "–", "–", f"{values[-1]:.1f}",
                      f"{values[hottest]:.1f}", number(times[hottest]), "–"])  # fmt: skip
@@ -235,7 +235,7 @@ def _extremes(result: ResultData) -> Rows:
             f"{row['temperature_degC']:.1f}", number(row["time_s"]), f"{row['r_m'] * 1e3:.1f}",
             f"{row['z_m'] * 1e3:.1f}",
         ]
-        for row in result.extremes.to_dict("records")
+        for row in result.extreme_rows
     ]  # fmt: skip
 
 

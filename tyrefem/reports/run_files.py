@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 from tyrefem.inputs.published import PublishedComparison, compared, of_footprint
 from tyrefem.inputs.study_plugins import plugin_summary
-from tyrefem.output import atomic_path, versions, write_json
+from tyrefem.output import versions, write_json
+from tyrefem.output.csv_table import columns_of, write_csv
 
 if TYPE_CHECKING:
     from tyrefem.inputs.study import StudyData
@@ -64,20 +65,20 @@ TABLES = ("readings.csv", "extremes.csv", "heat_budget.csv", "heat_power.csv", "
 def summary(result: ResultData) -> dict[str, Any]:
     """Numbers of the run; each key names its unit: SI or degC."""
     study, history = result.study, result.history
-    readings, peak = result.readings, result.extremes.iloc[0]
+    readings, peak = result.reading_columns, result.extreme_rows[0]
     resistance = result.rolling_resistance
     return {
         "study": study.name,
         "title": study.title,
         "complete": not history.interrupted,
         "hottest": {
-            "temperature_degC": peak.temperature_degC,
-            "time_s": peak.time_s,
+            "temperature_degC": peak["temperature_degC"],
+            "time_s": peak["time_s"],
             "region": _hottest_region(result),
-            "r_m": peak.r_m,
-            "z_m": peak.z_m,
-            "s_m": peak.s_m,
-            "depth_m": peak.depth_m,
+            "r_m": peak["r_m"],
+            "z_m": peak["z_m"],
+            "s_m": peak["s_m"],
+            "depth_m": peak["depth_m"],
         },
         "rolling_resistance": {
             "phase": resistance.phase,
@@ -94,10 +95,10 @@ def summary(result: ResultData) -> dict[str, Any]:
         },
         **({} if not result.states else {"states": _states(result)}),
         "sensors": {
-            name: {"end_degC": float(readings[name].iloc[-1]), "max_degC": float(readings[name].max())}
+            name: {"end_degC": float(readings[name][-1]), "max_degC": float(readings[name].max())}
             for name in study.sensors
         },
-        "extremes": result.extremes.to_dict("records"),
+        "extremes": result.extreme_rows,
         "heat_budget": result.heat_budget.to_dict(),
         **({} if result.sliding is None else {"sliding": result.sliding.to_dict()}),
         **({} if result.feedback is None else {"feedback": result.feedback.to_dict()}),
@@ -151,28 +152,31 @@ def write_tables(result: ResultData, folder: Path, *, parquet: bool = False) -> 
 
     With slip also ``sliding.csv``: the contact over time. ``parquet``: the tables as Parquet files, too.
     """
-    from tyrefem.reports.parquet import write_parquet
     from tyrefem.simulation.stored_result import FILE, write_result
 
+    if parquet:
+        import pandas as pd
+
+        from tyrefem.reports.parquet import write_parquet
+
     folder.mkdir(parents=True, exist_ok=True)
-    readings = result.readings.rename(columns=lambda name: "time [s]" if name == "time_s" else f"{name} [degC]")
-    readings["contained-air pressure [kPa]"] = result.gas_pressure / 1e3
+    readings: dict[str, Any] = {f"{name} [degC]": values for name, values in result.reading_columns.items()}
     # Six digits are enough for a temperature, not for a time: no two rows may have the same time.
-    readings["time [s]"] = [f"{time:.12g}" for time in readings["time [s]"]]
+    readings = {"time [s]": [f"{time:.12g}" for time in readings.pop("time_s [degC]")], **readings}
+    readings["contained-air pressure [kPa]"] = result.gas_pressure / 1e3
     tables = {
         "readings.csv": readings,
-        "extremes.csv": result.extremes,
-        "heat_budget.csv": result.heat_budget.table,
-        "heat_power.csv": result.heat_budget.series,
+        "extremes.csv": columns_of(result.extreme_rows),
+        "heat_budget.csv": columns_of(result.heat_budget.rows),
+        "heat_power.csv": result.heat_budget.columns,
     }
     if result.sliding is not None:
-        tables["sliding.csv"] = result.sliding.series
+        tables["sliding.csv"] = {str(name): values for name, values in result.sliding.series.items()}
     for name, table in tables.items():
-        with atomic_path(folder / name) as temporary:
-            table.to_csv(temporary, index=False, float_format="%.6g")
+        write_csv(table, folder / name)
         if parquet:
             # Full digits, and the columns' names of the Python table.
-            whole = result.readings if table is readings else table
+            whole = result.readings if table is readings else pd.DataFrame(table)
             write_parquet(whole, (folder / name).with_suffix(".parquet"))
     write_result(result, folder / FILE)
     result.study.save(folder / "study.toml")

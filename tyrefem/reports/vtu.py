@@ -9,9 +9,9 @@ from __future__ import annotations
 import re
 import zlib
 from collections.abc import Mapping, Sequence
+from html import escape
 from pathlib import Path
 from typing import Any
-from xml.sax.saxutils import escape, quoteattr
 
 import numpy as np
 from numpy.typing import NDArray
@@ -113,7 +113,7 @@ def _entry(name: str, values: Array, parts: int = 1) -> tuple[str, bytes]:
     """Attributes of an array's element, and its compressed data."""
     little = np.ascontiguousarray(values, dtype=values.dtype.newbyteorder("<"))
     components = f' NumberOfComponents="{values.shape[1]}"' if values.ndim > 1 and name != "connectivity" else ""
-    header = f'type="{_TYPES[little.dtype.str[1:]]}" Name={quoteattr(name)}{components}'
+    header = f'type="{_TYPES[little.dtype.str[1:]]}" Name="{escape(name)}"{components}'
     return header, compressed(little.tobytes(), little.nbytes // parts if parts > 1 else BLOCK)
 
 
@@ -152,4 +152,4 @@ def comment(text: str) -> str:
     >>> comment("a -- b <c>")
     'a - - b &lt;c&gt;'
     """
-    return re.sub(r"-(?=-)|-$", "- ", escape(text))
+    return re.sub(r"-(?=-)|-$", "- ", escape(text, quote=False))

@@ -43,7 +43,7 @@ class HeatBudget(Brief):
 
     def _facts(self) -> Mapping[str, Any]:
         kinds = dict.fromkeys(kind for kind, _ in self.energies if kind != "lumped")
-        entries = [row for row in self.table.to_dict("records") if row["kind"] in ("lost", "lumped")]
+        entries = [row for row in self.rows if row["kind"] in ("lost", "lumped")]
         return {
             "until": f"{float(self.times[-1]):g} s",
             **{kind: f"{self.total(kind):.6g} J, {float(self.power(kind)[-1]):.6g} W at the end" for kind in kinds},
@@ -82,9 +82,14 @@ class HeatBudget(Brief):
 
     @property
     def table(self) -> pd.DataFrame:
-        """One row per entry: ``kind``, ``name``, ``energy_J`` and ``power_W`` at the end, ``share`` of `made`."""
+        """`rows` as a table."""
         import pandas as pd
 
+        return pd.DataFrame(self.rows)
+
+    @property
+    def rows(self) -> list[dict[str, Any]]:
+        """One row per entry: ``kind``, ``name``, ``energy_J`` and ``power_W`` at the end, ``share`` of `made`."""
         made = self.made
         rows = []
         for (kind, name), series in self.energies.items():
@@ -98,21 +103,25 @@ class HeatBudget(Brief):
                     "share": float(series[-1]) / made if made > 0 else float("nan"),
                 }
             )
-        return pd.DataFrame(rows)
+        return rows
 
     @property
     def series(self) -> pd.DataFrame:
-        """Powers over time: ``time_s`` and one column ``kind:name_W`` each."""
+        """`columns` as a table."""
         import pandas as pd
 
+        return pd.DataFrame(self.columns)
+
+    @property
+    def columns(self) -> dict[str, Any]:
+        """Powers over time: ``time_s`` and one column ``kind:name_W`` each."""
         columns: dict[str, Any] = {"time_s": self.times}
-        columns |= {f"{kind}:{name}_W": series for (kind, name), series in self.powers.items()}
-        return pd.DataFrame(columns)
+        return columns | {f"{kind}:{name}_W": series for (kind, name), series in self.powers.items()}
 
     def to_dict(self) -> dict[str, Any]:
         """Data for JSON: energies and final powers by kind and name, and the imbalance."""
         shares: dict[str, Any] = {"imbalance": self.imbalance, "residual_J": float(self.residual[-1])}
-        for row in self.table.to_dict("records"):
+        for row in self.rows:
             entry = {"energy_J": row["energy_J"]}
             if row["kind"] != "lumped":
                 entry["power_W"] = row["power_W"]

@@ -157,18 +157,18 @@ class ResultData(Brief):
 
     @functools.cached_property
     def readings(self) -> pd.DataFrame:
-        """``time_s``, one column per sensor (lag applied), the contained air, and a lumped rim; degC.
-
-        ``readings.attrs["units"]``: column -> unit.
-        """
+        """`reading_columns` as a table; ``readings.attrs["units"]``: column -> unit."""
         import pandas as pd
 
-        lumped = {GAS: self.gas_temperature}
-        if self.rim_temperature is not None:
-            lumped[RIM] = self.rim_temperature
-        table = pd.DataFrame({"time_s": self.times, **self.recorded, **lumped})
+        table = pd.DataFrame(self.reading_columns)
         table.attrs["units"] = {name: "s" if name == "time_s" else "degC" for name in table}
         return table
+
+    @property
+    def reading_columns(self) -> dict[str, Array]:
+        """``time_s``, one column per sensor (lag applied), the contained air, and a lumped rim; degC."""
+        rim = {} if self.rim_temperature is None else {RIM: self.rim_temperature}
+        return {"time_s": self.times, **self.recorded, GAS: self.gas_temperature, **rim}
 
     @functools.cached_property
     def recorded(self) -> dict[str, Array]:
@@ -218,16 +218,21 @@ class ResultData(Brief):
 
     @functools.cached_property
     def gradient_at_sensors(self) -> pd.DataFrame:
-        """|grad T| at every sensor, K/m, shaped as `readings`; 0 for lumped temperatures.
+        """|grad T| at every sensor, K/m, shaped as `readings`; 0 for lumped temperatures."""
+        table = self.readings * 0.0
+        table["time_s"] = self.times
+        for name, gradient in self.sensor_gradients.items():
+            table[name] = gradient
+        return table
+
+    @functools.cached_property
+    def sensor_gradients(self) -> dict[str, Array]:
+        """Sensor -> |grad T|, (n_times,) K/m.
 
         Central differences over +-0.5 mm along the meridian and the depth, kept inside the rubber.
         """
-        import pandas as pd
-
-        table = self.readings * 0.0
-        table["time_s"] = self.times
         if not self.sensor_places:
-            return table
+            return {}
         section, step = self.study.section, 5e-4
         s, depth = section.locate(np.array(list(self.sensor_places.values())))
         squares = np.zeros((len(self.times), len(s)))
@@ -236,15 +241,18 @@ class ResultData(Brief):
             apart = np.linalg.norm(ends[0] - ends[1], axis=1)
             # At the crown of a half section, both ends are the same point, where the slope along the meridian is zero.
             squares += ((self.at(ends[0]) - self.at(ends[1])) / np.where(apart > 0, apart, np.inf)) ** 2
-        gradients = pd.DataFrame(np.sqrt(squares), columns=list(self.sensor_places))
-        table[list(self.sensor_places)] = gradients
-        return table
+        return dict(zip(self.sensor_places, np.sqrt(squares).T, strict=True))
 
     @functools.cached_property
     def extremes(self) -> pd.DataFrame:
-        """Highest temperature of every region over the whole run, with place and time."""
+        """`extreme_rows` as a table."""
         import pandas as pd
 
+        return pd.DataFrame(self.extreme_rows)
+
+    @functools.cached_property
+    def extreme_rows(self) -> list[dict[str, Any]]:
+        """Highest temperature of the tyre and of every region over the whole run, with place and time."""
         rows = []
         for region, peak in self.peaks.items():
             s, depth = self.place_of(peak)
@@ -259,7 +267,7 @@ class ResultData(Brief):
                     "depth_m": depth,
                 }
             )
-        return pd.DataFrame(rows)
+        return rows
 
     @property
     def peaks(self) -> dict[str, Peak]:

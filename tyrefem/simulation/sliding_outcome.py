@@ -155,6 +155,8 @@ def _warnings(run: SlidingRun, phase: SlidingPhase, series: pd.DataFrame) -> Ite
 
 def sliding_outcome(run: SlidingRun) -> SlidingOutcome | None:
     """The sliding of a run; None if no phase with slip was reached."""
+    if not any(run.tyre.sliding.rubs(phase) for phase in run.study.card.drive.phases):
+        return None
     import pandas as pd
 
     phases, rows = [], []

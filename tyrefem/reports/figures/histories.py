@@ -74,19 +74,19 @@ def histories_figure(result: ResultData) -> Figure:
 
 def _lines(axes: Axes, result: ResultData, divisor: float) -> list[Label]:
     """Draw every column of the readings; return the labels for their ends."""
-    readings = result.readings
-    t = readings["time_s"].to_numpy() / divisor
+    readings = result.reading_columns
+    t = readings["time_s"] / divisor
     sensors = list(result.sensor_places)
     labels = []
     for number, name in enumerate(sensors):
-        values = readings[name].to_numpy()
+        values = readings[name]
         style = line_style(number)
         axes.plot(t, values, lw=1.5, **style)
         labels.append(
             Label(f"{short(name, 24)} {values[-1]:.1f} °C", float(t[-1]), float(values[-1]), color=style["color"])
         )
-    for number, name in enumerate(column for column in readings.columns if column not in ("time_s", *sensors)):
-        values = readings[name].to_numpy()
+    for number, name in enumerate(column for column in readings if column not in ("time_s", *sensors)):
+        values = readings[name]
         axes.plot(t, values, color=QUIET, lw=2.4, ls=("-", ":")[number % 2], alpha=0.75)
         text = f"{name.replace('-', ' ')} {values[-1]:.1f} °C"
         labels.append(Label(text, float(t[-1]), float(values[-1]), bold=True, color=QUIET))

@@ -1,0 +1,36 @@
+"""CSV files are pandas' own, made without it."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from tyrefem.output.csv_table import columns_of, write_csv
+
+pytestmark = pytest.mark.fast
+
+
+def test_as_pandas_writes_it(tmp_path: Path) -> None:
+    columns = {
+        "time_s": np.array([0.0, 1 / 3, 1e-17, 123456789.0]),
+        'name, "quoted"': ["plain", 'with "quotes"', "with, comma", "grüß dich"],
+        "count": np.arange(4),
+        "capped": [True, False, True, False],
+        "missing": [math.nan, -2.5, math.inf, 1e300],
+    }
+    written = write_csv(columns, tmp_path / "folder" / "table.csv")
+    assert written.read_text(encoding="utf-8") == pd.DataFrame(columns).to_csv(index=False, float_format="%.6g")
+
+
+def test_columns_of_different_length_write_nothing(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match="shorter"):
+        write_csv({"a": [1], "b": []}, tmp_path / "table.csv")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_no_rows_are_no_columns() -> None:
+    assert columns_of([]) == {}
