@@ -32,7 +32,7 @@ def small(tmp_path_factory: pytest.TempPathFactory) -> Study:
 title = "Small tyre <of the tests>"
 section = "nasa-22x5.5-8pr"
 materials = { carcass = "nasa-carcass", tread = "nasa-tread", sidewall = "nasa-sidewall", bead = "nasa-bead" }
-mesh = { size = "14 mm", through = 1 }
+mesh = { size = "20 mm", through = 1 }
 
 [drive]
 speed = "20 mph"
@@ -64,7 +64,8 @@ table = "other.csv"
 drive = { pressure = "90 psi" }
 """
     (folder / "study.toml").write_text(text)
-    return tyrefem.study(folder / "study.toml")
+    # As `tyrefem explore study.toml --set ...`: the copied command must have the changes, too.
+    return tyrefem.study(folder / "study.toml", {"mesh.size": "14 mm"})
 
 
 @pytest.fixture(scope="session")

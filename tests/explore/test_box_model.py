@@ -19,6 +19,7 @@ from tyrefem.realtime.export import write
 from tyrefem.realtime.inputs import NAMES
 from tyrefem.realtime.setting_tyre import step_lengths
 from tyrefem.realtime.tyre import Inputs, RealTimeTyre
+from tyrefem.reports.explore_data import changes_of_file
 from tyrefem.variants.plan import plan_of
 from tyrefem.variants.samples import changes_at
 
@@ -130,8 +131,10 @@ def test_default_box_holds_the_study_and_its_measured_runs(small: Study) -> None
     ("vary", "options", "message"),
     [
         ({"materials.tread": ["nasa-tread", "rubber-tread-aircraft"]}, {}, "a list has no slider"),
-        ({"drive.phases.rolling.duration": ("60 s", "90 s")}, {}, "duration cannot vary"),
-        ({"mesh.size": ("12 mm", "14 mm")}, {}, "changes the mesh"),
+        ({"drive.phases.rolling.duration": ("60 s", "90 s")}, {}, "a duration has no slider"),
+        ({"drive.phases.rolling.duration": ("60 s", "90 s")}, {}, "Sliders move speed, load, pressure"),
+        ({"mesh.size": ("12 mm", "14 mm")}, {}, "vary.mesh.size: has no slider: it needs another mesh"),
+        ({"mechanics.strain": ["arcs", "barrel"]}, {}, "a list has no slider"),
         ({"drive.sped": ("10 mph", "20 mph")}, {}, "speed"),
         ({"drive.speed": ("10 mph", "20 mph")}, {"axes": ("drive.load", "drive.speed")}, "'drive.load' does not vary"),
         ({"drive.speed": ("10 mph", "20 mph")}, {"tolerance": 1e-4}, "numerics.tolerance"),
@@ -171,3 +174,14 @@ def test_the_study_may_choose(small: Study) -> None:
 def test_a_case_of_a_campaign_is_needed() -> None:
     with pytest.raises(InputError, match="campaign"):
         tyrefem.study("nasa-campaign").explore()
+
+
+def test_what_differs_from_the_file_is_known_by_dotted_names(small: Study) -> None:
+    lumped = {"law": "fixed"}
+    changed = small.replace(
+        {"drive.load": "2500 lbf", "boundaries.rim": lumped, "drive.phases.rolling.duration": "70 s"}
+    )
+    changes = changes_of_file(changed)
+    assert set(changes) == {"mesh.size", "drive.load", "drive.phases", "boundaries.rim"}
+    assert Study.load(str(small.file), changes).data == changed.data
+    assert changes_of_file(Study.load(str(small.file))) == {}

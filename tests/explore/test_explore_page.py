@@ -107,13 +107,15 @@ def test_a_setting_outside_the_box_is_marked(acted: Any) -> None:
 
 @pytest.mark.usefixtures("needs_chromium")
 def test_copied_flags_and_tables_make_the_setting(acted: Any, explored: Exploration) -> None:
-    """Both texts change the study as the page has it; without a change the command has no flags."""
-    study = explored.study
-    assert acted["first"]["command"].split() == ["tyrefem", "run", str(study.file)]
+    """Both texts change the study's file to what the page has; no slider moved: only what --set had changed."""
+    study = Study.load(explored.study.file)
+    first = shlex.split(acted["first"]["command"].replace("\\\n", " "))
+    assert first == ["tyrefem", "run", str(study.file), "--set", "mesh.size=14 mm"]
     words = shlex.split(acted["copied"]["command"].replace("\\\n", " "))
     assert words[:3] == ["tyrefem", "run", str(study.file)]
     assert set(words[3::2]) == {"--set"}
     by_flags = study.replace(settings(words[4::2]))
+    assert by_flags.card.mesh.size == explored.study.card.mesh.size
     tables = tomllib.loads(acted["copied"]["toml"])
     by_tables = study.replace({f"{table}": content for table, content in tables.items()})
     for number, value, typed in zip(explored.plan.varied, acted["copied"]["numbers"], acted["written"], strict=True):
@@ -129,9 +131,12 @@ def test_two_settings_stand_side_by_side(acted: Any) -> None:
     pins = acted["pins"]
     assert pins["shown"]
     rows = {row[0]: row[1:] for row in pins["rows"]}
-    assert rows["speed"] == ["16.0 mph", "30.0 mph", "+14.0 mph"]
+    assert rows["speed"] == ["16.0 mph", "30.0 mph", "+14.0 mph", ""]
     first, second = pins["hottest"]
-    assert rows["highest of the drive"] == [f"{first:.1f} °C", f"{second:.1f} °C", f"+{second - first:.1f} °C"]
+    *numbers, error = rows["highest of the drive"]
+    assert numbers == [f"{first:.1f} °C", f"{second:.1f} °C", f"+{second - first:.1f} °C"]
+    assert 0 < float(error) < 0.5, "the certificate's error beside them"
+    assert all(row[-1] for name, row in rows.items() if name != "speed")
     assert pins["note"].startswith("B − A: blue colder, red hotter")
     assert pins["ghosts"] == 2 * 4
 

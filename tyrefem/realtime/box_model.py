@@ -214,13 +214,28 @@ def box_model(
     )
 
 
+#: What a slider can move.
+POSSIBLE = (
+    "Sliders move speed, load, pressure, ambient, road_temperature and initial of the drive or of a phase; "
+    "loss_tangent, conductivity, specific_heat and density of materials.REGION; numbers of the laws in boundaries"
+)
+
+
 def check_explored(plan: Plan, tolerance: float) -> None:
     """Raise `InputError` if a plan's box cannot be explored."""
     NEEDS.check(plan.study)
+    for number in plan.varied:
+        table, last = number.key.split(".")[0], number.key.rpartition(".")[2]
+        field = f"vary.{number.key}"
+        if number.values:
+            raise InputError(
+                f"a list has no slider: give a range or a factor, or make a page of each. {POSSIBLE}", field=field
+            )
+        if last == "duration":
+            raise InputError(f"a duration has no slider: all settings share their times. {POSSIBLE}", field=field)
+        if table in ("section", "mesh", "output", "numerics", "mechanics"):
+            raise InputError(f"has no slider: it needs another mesh or other strain cycles. {POSSIBLE}", field=field)
     check_varied(plan)
-    listed = next((number.key for number in plan.varied if number.values), None)
-    if listed is not None:
-        raise InputError("a list has no slider: give a range from, to, or a factor", field=f"vary.{listed}")
     if tolerance < plan.study.tolerance:
         raise InputError(
             f"{tolerance:g} K is less than the time error of the full runs; must be at least numerics.tolerance, "

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tyrefem.cards import read_toml
 from tyrefem.errors import InputError
 from tyrefem.inputs.changes import all_changed
 from tyrefem.inputs.study_plugins import plugin_summary
@@ -30,6 +31,7 @@ def page_data(model: BoxModel) -> dict[str, Any]:
     data = {
         "name": study.name,
         "argument": argument(study),
+        "changes": changes_of_file(study),
         "title": study.title,
         "versions": versions(),
         **plugin_summary(study),
@@ -63,6 +65,27 @@ def argument(study: StudyData) -> str:
         return study.name
     path = Path(study.file)
     return str(path.relative_to(Path.cwd())) if path.is_relative_to(Path.cwd()) else str(path)
+
+
+def changes_of_file(study: StudyData) -> dict[str, Any]:
+    """Dotted name -> value of the study, where it differs from its file: ``--set`` of the command, a case."""
+    if study.file is None:
+        return {}
+    try:
+        before = read_toml(Path(study.file))
+    except InputError:
+        return {}
+
+    def differences(old: Any, new: Any, name: str) -> Iterator[tuple[str, Any]]:
+        if isinstance(old, Mapping) and isinstance(new, Mapping) and set(old) <= set(new):
+            for key, value in new.items():
+                yield from differences(old.get(key), value, f"{name}.{key}" if name else key)
+        elif old != new:
+            yield name, new
+
+    # A study of a campaign has no table of cases any more.
+    before.pop("cases", None)
+    return dict(differences(before, study.data, ""))
 
 
 def limits_of(model: BoxModel, start: Sequence[float]) -> list[dict[str, Any]]:

@@ -85,6 +85,7 @@ function written(number, value) {
 }
 function literal(value) {
   if (Array.isArray(value)) return `[${value.map(literal).join(", ")}]`;
+  if (value !== null && typeof value === "object") return `{${Object.entries(value).map(([key, each]) => `${/^[\w-]+$/.test(key) ? key : JSON.stringify(key)} = ${literal(each)}`).join(", ")}}`;
   return typeof value === "string" ? JSON.stringify(value) : String(value);
 }
 
@@ -236,6 +237,7 @@ function fitColours(anew) {
   if (high > state.scale[1]) state.scale[1] = Math.ceil(high / 5) * 5;
 }
 
+function errorAt(name, numbers, scale = 1) { return errors[name] === undefined ? "" : DATA.numbers.some((number, i) => outside(number, numbers[i])) ? "?" : significant(errors[name] / scale, 1); }
 function errorOf(name) { return anyOutside() ? "± ?" : errors[name] === undefined ? "" : `± ${significant(errors[name], 1)}`; }
 function anyOutside() { return DATA.numbers.some((number, i) => outside(number, state.numbers[i])); }
 
@@ -535,22 +537,22 @@ function drawPins() {
   }
   const table = $("pins-table");
   table.replaceChildren();
-  const add = (label, a, b, digits, unit) => {
+  const add = (label, a, b, digits, unit, error = "", scale = 1) => {
     const cell = (value) => make("td", { text: value === undefined ? "" : `${fixed(value, digits)} ${unit}` });
-    table.append(make("tr", {}, make("td", { class: "word", text: label }), cell(a), cell(b), make("td", { text: a === undefined || b === undefined ? "" : `${b > a ? "+" : ""}${fixed(b - a, digits)} ${unit}` })));
+    table.append(make("tr", {}, make("td", { class: "word", text: label }), cell(a), cell(b), make("td", { text: a === undefined || b === undefined ? "" : `${b > a ? "+" : ""}${fixed(b - a, digits)} ${unit}` }), make("td", { class: "error", text: [A, B].some((each) => each && errorAt(error, each.numbers) === "?") ? "?" : errorAt(error, (A || B).numbers, scale) })));
   };
   DATA.numbers.forEach((number, i) => {
     const [a, b] = [A, B].map((each) => each && each.numbers[i]);
     if ((a !== undefined && b !== undefined && a !== b) || (!(A && B) && (a ?? b) !== number.start)) add(number.label, a, b, digitsOf(number), number.symbol);
   });
   const both = (key, scale = 1) => values.map((each) => each && each[key] / scale);
-  add("hottest at that time", ...both("hottest"), 1, "°C");
-  add("highest of the drive", ...both("hottest_degC"), 1, "°C");
-  for (const { name } of lines) add(short(name), ...both(name), 1, "°C");
-  add("rolling resistance of the drive", ...both("rolling_resistance_N"), 1, "N");
-  add("its coefficient", ...both("rolling_resistance_coefficient"), 5, "");
-  add("contained air’s pressure", ...both("gas_pressure", DATA.pressure.pascal), 1, DATA.pressure.unit);
-  for (const name of [...tyre.about.heat, ...tyre.about.lost, "stored"]) add(short(name), ...both(name), 1, "W");
+  add("hottest at that time", ...both("hottest"), 1, "°C", "hottest");
+  add("highest of the drive", ...both("hottest_degC"), 1, "°C", "hottest_degC");
+  for (const { name } of lines) add(short(name), ...both(name), 1, "°C", name);
+  add("rolling resistance of the drive", ...both("rolling_resistance_N"), 1, "N", "rolling_resistance_N");
+  add("its coefficient", ...both("rolling_resistance_coefficient"), 5, "", "rolling_resistance_coefficient");
+  add("contained air’s pressure", ...both("gas_pressure", DATA.pressure.pascal), 1, DATA.pressure.unit, "gas_pressure", DATA.pressure.pascal);
+  for (const name of [...tyre.about.heat, ...tyre.about.lost, "stored"]) add(short(name), ...both(name), 1, "W", name);
 }
 
 /* ---- texts ---- */
@@ -558,10 +560,9 @@ function drawPins() {
 function showTexts() {
   const changed = DATA.numbers.map((number, i) => [number, state.numbers[i]]).filter(([number, value]) => value !== number.start);
   const quoted = (text) => /[^\w.,:=/+-]/.test(text) ? `'${text}'` : text;
-  $("command").textContent = [`tyrefem run ${quoted(DATA.argument)}`, ...changed.map(([number, value]) => {
-    const value_ = written(number, value);
-    return `    --set ${quoted(`${number.key}=${typeof value_ === "string" ? value_ : literal(value_)}`)}`;
-  })].join(" \\\n");
+  // What was changed of the study's file before the page was made comes first.
+  const flags = [...Object.entries(DATA.changes), ...changed.map(([number, value]) => [number.key, written(number, value)])];
+  $("command").textContent = [`tyrefem run ${quoted(DATA.argument)}`, ...flags.map(([key, value]) => `    --set ${quoted(`${key}=${typeof value === "string" ? value : literal(value)}`)}`)].join(" \\\n");
   let text = DATA.toml;
   DATA.numbers.forEach((number, i) => { text = text.replace(`"@${i}@"`, () => literal(written(number, state.numbers[i]))); });
   $("toml").textContent = text.trim();
