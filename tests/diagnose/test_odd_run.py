@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import json
 import math
 from dataclasses import replace
@@ -14,6 +15,7 @@ import pytest
 from hidden import END, NOISE, RUNS, study
 
 import tyrefem as tf
+from tyrefem.api import DiagnosisRecord
 from tyrefem.diagnose.candidates import SetPrior, catalogue_candidates, in_single_runs, separate
 from tyrefem.diagnose.diagnosis import DiagnosisData
 from tyrefem.diagnose.forward_model import FOLLOWED, ForwardModel
@@ -90,6 +92,31 @@ def test_record_page_and_amended_study_state_the_run(diagnosis: DiagnosisData, t
     (known,) = (unknown for unknown in base_unknowns(amended) if unknown.effect == "hot-road")
     assert known.runs == (ODD,)
     assert known.key == f"effects.hot-road.warmer_by in {ODD}"
+
+
+def test_a_folder_gives_verdict_readings_and_amended_study_back(diagnosis: DiagnosisData, tmp_path: Path) -> None:
+    diagnosis.save(tmp_path)
+    back = tf.load(tmp_path)
+    assert isinstance(back, DiagnosisRecord)
+    assert back.verdict == diagnosis.verdict
+    assert back.named == pytest.approx({"hot-road": diagnosis.to_dict()["effects"][0]["probability"]})
+    assert back.study is not None
+    assert back.study.data["effects"] == diagnosis.study.data["effects"]
+    assert back.rms["before"]["rms_K"] == pytest.approx(diagnosis.rms(after=False, held_out=False))
+    assert back.noise == pytest.approx(diagnosis.noise)
+    assert next(iter(back.sets)) == diagnosis.judgement.ranking[0].key
+    assert (back.again is None) == (diagnosis.again is None or diagnosis.again.verdict == "no gap")
+    # The amended study is nearer to the readings than the original.
+    off = (back.readings["measured_degC"] - back.readings[name] for name in ("original_degC", "amended_degC"))
+    before, after = (float((each**2).mean()) for each in off)
+    assert after < 0.25 * before
+    # Words and bars of its page are those of the diagnosis.
+    assert repr(back).splitlines()[0] == f"DiagnosisRecord of {diagnosis.original.name}: {back.verdict}"
+    page, again = diagnosis._repr_html_(), back._repr_html_()
+    assert page is not None
+    assert again is not None
+    assert again.count("<rect") == page.count("<rect")
+    assert back.headline[0] in html.unescape(again)
 
 
 def test_a_road_hot_in_all_runs_is_named_in_all(tmp_path: Path) -> None:

@@ -10,6 +10,7 @@ from typing import Any
 
 import matplotlib.image
 import numpy as np
+import pandas as pd
 import pytest
 
 import tyrefem as tf
@@ -246,6 +247,25 @@ def test_folders_of_other_commands_give_summary_tables_and_study(tmp_path: Path)
     assert "tables    pareto, sweep" in repr(record)
     with pytest.raises(InputError, match="no table 'sweeep'; did you mean 'sweep'"):
         record.table("sweeep")
+
+
+def test_a_comparison_comes_back_from_its_folder(tmp_path: Path) -> None:
+    coarse = {"mesh.size": "14 mm", "mesh.element": "P1", "numerics.tolerance": "1 delta_degC"}
+    comparison = tf.study("example-validation", coarse).compare(inputs=False)
+    comparison.save(tmp_path / "first")
+    back = tf.load(tmp_path / "first")
+    assert isinstance(back, tf.api.Comparison)
+    assert repr(back) == repr(comparison)
+    assert back.to_dict() == comparison.to_dict()
+    for name, curve in comparison.curves.items():
+        pd.testing.assert_frame_equal(back.curves[name], curve)
+    back.save(tmp_path / "second")
+    for file in (tmp_path / "first").iterdir():
+        assert (tmp_path / "second" / file.name).read_bytes() == file.read_bytes(), file.name
+    (tmp_path / "first" / "residuals.csv").write_text("run\nslow\n")
+    (tmp_path / "first" / "comparison.json").write_text("{}")
+    with pytest.raises(InputError, match="damaged"):
+        tf.load(tmp_path / "first")
 
 
 # -- arrays in a file --------------------------------------------------------------------------------------------------

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from tyrefem.api.comparison import Comparison
     from tyrefem.api.design import Design
     from tyrefem.api.diagnosis import Diagnosis, ExperimentPlan
+    from tyrefem.api.diagnosis_record import DiagnosisRecord
     from tyrefem.api.exploration import Exploration
     from tyrefem.api.identification import Identification, identify
     from tyrefem.api.life import Life
@@ -32,6 +33,7 @@ __all__ = [
     "Comparison",
     "Design",
     "Diagnosis",
+    "DiagnosisRecord",
     "ExperimentPlan",
     "Exploration",
     "ForceTable",
@@ -55,6 +57,7 @@ _MODULES = {
     "Comparison": "comparison",
     "Design": "design",
     "Diagnosis": "diagnosis",
+    "DiagnosisRecord": "diagnosis_record",
     "ExperimentPlan": "diagnosis",
     "Exploration": "exploration",
     "ForceTable": "mechanics",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from tyrefem.api.record import Record, read_json
 from tyrefem.api.result import Result
@@ -12,12 +13,20 @@ from tyrefem.errors import InputError, nearest
 from tyrefem.output import SUMMARY
 from tyrefem.output.folder import COMMAND, COMPLETE
 
+if TYPE_CHECKING:
+    from tyrefem.api.comparison import Comparison
+    from tyrefem.api.diagnosis_record import DiagnosisRecord
 
-def load(folder: str | Path) -> Result | Record:
-    """The result of a folder: of `tyrefem run` and `Result.save` the `Result`, of other commands a `Record`.
+#: Files of a comparison.
+COMPARISON = ("comparison.csv", "residuals.csv", "curves.csv", "comparison.json")
+
+
+def load(folder: str | Path) -> Result | Comparison | DiagnosisRecord | Record:
+    """The result of a folder: a `Result`, a `Comparison`, a `DiagnosisRecord`, or of other commands a `Record`.
 
     A `Result` from a folder is the one of the run: readings, temperatures, heat budget, pictures, report, VTK, study.
     Cards of the study are those of the run, though their files have changed since. No code of the files is run.
+    A `Comparison` is the one of the command; a `DiagnosisRecord` has verdict, sets, readings and the amended study.
 
     Parameters
     ----------
@@ -44,6 +53,17 @@ def load(folder: str | Path) -> Result | Record:
         raise InputError(f"no such folder of results{_near(place)}", file=place)
     if (place / FILE).is_file():
         return with_verbs(Result, read_result(place / FILE, Study))
+    if all((place / name).is_file() for name in COMPARISON):
+        from tyrefem.api.comparison import Comparison
+        from tyrefem.compare.stored import read_comparison
+
+        return with_verbs(Comparison, read_comparison(place))
+    if (place / "verdict.json").is_file():
+        from tyrefem.api.diagnosis_record import DiagnosisRecord
+
+        read_json(place / "verdict.json")
+        whole = not (place / SUMMARY).is_file() or bool(read_json(place / SUMMARY).get(COMPLETE, True))
+        return DiagnosisRecord(place, "diagnose", whole)
     if not (place / SUMMARY).is_file():
         raise InputError(
             f"is no folder of results: it has neither {FILE} nor {SUMMARY}; 'tyrefem run STUDY --out FOLDER' makes one",

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tyrefem.compare.history import ALL
+from tyrefem.compare.stored import CURVES, RECORD, RESIDUALS, TABLE, curves_table
 from tyrefem.output import atomic_folder
 from tyrefem.reports.figures.phases import Phase, draw_phases, make_room
 
@@ -187,14 +188,15 @@ def _png(figure: Figure) -> bytes:
 
 
 #: Files that `save` may write.
-FILES = ("comparison.csv", "residuals.csv", "comparison.json", "comparison.html", "histories-*.png", "deviations.png")
+FILES = (TABLE, RESIDUALS, CURVES, RECORD, "comparison.html", "histories-*.png", "deviations.png")
 
 
 def save(comparison: ComparisonData, folder: str | Path) -> Path:
     """Write tables, pictures and a self-contained page into a folder; return the page's path.
 
-    ``comparison.csv``, ``residuals.csv``, ``comparison.json``, ``histories-<run>.png``, ``deviations.png``,
-    ``comparison.html``. Each file is written completely or not at all.
+    ``comparison.csv``, ``residuals.csv``, ``curves.csv``, ``comparison.json``, ``histories-<run>.png``,
+    ``deviations.png``, ``comparison.html``. Each file is written completely or not at all; `tyrefem.load` gives the
+    comparison back.
 
     Raises
     ------
@@ -202,10 +204,11 @@ def save(comparison: ComparisonData, folder: str | Path) -> Path:
     """
     folder = Path(folder)
     with atomic_folder(folder) as temporary:
-        comparison.table.to_csv(temporary / "comparison.csv", index=False, lineterminator="\n")
-        comparison.residuals.to_csv(temporary / "residuals.csv", index=False, lineterminator="\n")
+        tables = {TABLE: comparison.table, RESIDUALS: comparison.residuals, CURVES: curves_table(comparison)}
+        for name, table in tables.items():
+            table.to_csv(temporary / name, index=False, lineterminator="\n")
         text = json.dumps(comparison.to_dict(), indent=1, ensure_ascii=False, allow_nan=False)
-        (temporary / "comparison.json").write_text(text + "\n", encoding="utf-8")
+        (temporary / RECORD).write_text(text + "\n", encoding="utf-8")
         drawn = pictures(comparison)
         for name, picture in drawn.items():
             (temporary / name).write_bytes(picture)

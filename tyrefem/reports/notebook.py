@@ -211,6 +211,14 @@ def diagnosis_page(diagnosis: DiagnosisData) -> str:
     return page(diagnosis, verdict, bars_picture(bars, "%", "probability of sets of effects"), colour=colour)
 
 
+def diagnosis_record_page(record: Any) -> str:
+    """A diagnosis from its folder, as `diagnosis_page` has it: an `api.DiagnosisRecord`."""
+    bars = {name: (100 * share, PLAIN) for name, share in list(record.sets.items())[:BARS]}
+    colour = GOOD if record.verdict in ("identified", "no gap") else BAD
+    verdict = f"{record.verdict[0].upper()}{record.verdict[1:]}: {' '.join(record.headline[:2])}"
+    return page(record, verdict, bars_picture(bars, "%", "probability of sets of effects"), colour=colour)
+
+
 def design_page(design: DesignData) -> str:
     """A sweep: its first answer, and the variants by their first two answers, those on the Pareto front filled."""
     words = design.words
@@ -257,10 +265,10 @@ def bars_picture(bars: Mapping[str, tuple[float, str]], unit: str, label: str) -
     longest = max((value for value, _ in bars.values() if np.isfinite(value)), default=0.0) or 1.0
     content = []
     for number, (name, (value, colour)) in enumerate(bars.items()):
-        y = 20 * number
+        y = 24 * number
         width = max((WIDTH - 60) * (value if np.isfinite(value) else 0.0) / longest, 1.0)
         content.append(
             f'<text x="0" y="{y + 9}">{escape(cut(name, 52))}</text><rect x="0" y="{y + 11}" width="{width:.1f}" '
             f'height="5" fill="{colour}"/><text x="{width + 4:.1f}" y="{y + 18}">{value:.3g} {escape(unit)}</text>'
         )
-    return _svg("".join(content), f"{label}, {unit}", height=20 * len(bars) + 2)
+    return _svg("".join(content), f"{label}, {unit}", height=24 * len(bars) + 2)
