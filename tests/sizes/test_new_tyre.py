@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -217,3 +218,53 @@ def test_a_scaled_bias_tyre_runs_and_carries_like_the_first(here: Path) -> None:
         shares.append(result.phases[0].deflection / (section.outer_diameter / 2 - section.line.bead[1]))
         assert result.heat_budget.imbalance < 1e-9
     assert shares[1] == pytest.approx(shares[0], rel=0.25)
+
+
+@pytest.fixture
+def hand_drawn(here: Path) -> Study:
+    """The passenger tyre with a section that is drawn by hand on points."""
+    root = Path(__file__).resolve().parents[2]
+    (here / "geometry").mkdir()
+    text = (root / "tests/section/hand-drawn-radial.toml").read_text(encoding="utf-8")
+    (here / "geometry/hand.toml").write_text(text, encoding="utf-8")
+    text = (root / "studies/passenger-205-55r16/study.toml").read_text(encoding="utf-8")
+    (here / "studies/hand").mkdir(parents=True)
+    text = re.sub(r"^section = .*$", 'section = "hand"', text, flags=re.MULTILINE)
+    (here / "studies/hand/study.toml").write_text(text, encoding="utf-8")
+    return tf.study("studies/hand")
+
+
+@pytest.mark.parametrize("size", ["225/45R17", "195/65R15", "155/70R13", "205/55R16"])
+def test_a_section_drawn_by_hand_is_stretched_to_the_size(size: str, hand_drawn: Study) -> None:
+    new = made("studies/hand", size, f"passenger-{size.lower().replace('/', '-')}")
+    old, section, before, after = hand_drawn.section, new.section, draw_size("205/55R16").rules, draw_size(size).rules
+    ratio = {name: after[name].value / before[name].value for name in ("section_width", "outer_diameter", "rim_width")}
+    assert new.warnings == ()
+    assert section.overall_width == pytest.approx(ratio["section_width"] * old.overall_width, abs=3e-4)
+    assert section.outer_diameter == pytest.approx(ratio["outer_diameter"] * old.outer_diameter, abs=1e-4)
+    heels = [part.line.position(np.array([part.line.length]))[0] for part in (old, section)]
+    rims = (after["rim_diameter"].value - before["rim_diameter"].value) / 2
+    assert heels[1][0] - heels[0][0] == pytest.approx(rims, abs=3e-4), "the bead keeps its height on the rim"
+    assert heels[1][1] / heels[0][1] == pytest.approx(ratio["rim_width"], rel=0.01), "and lies as wide as the rim"
+    assert section.line.shoulder_s / old.line.shoulder_s == pytest.approx(ratio["section_width"], rel=0.03)
+    assert section.regions == old.regions
+    # Gauges stay where no number of plies and no rule changes them.
+    assert section.total_thickness(0.0) - old.total_thickness(0.0) == pytest.approx(
+        after["tread_gauge"].value - before["tread_gauge"].value, abs=2e-4
+    )
+    if size == "205/55R16":
+        assert section.volume("tread") == pytest.approx(old.volume("tread"), rel=1e-3)
+
+
+@pytest.mark.usefixtures("hand_drawn")
+def test_a_stretched_section_meshes() -> None:
+    new = made("studies/hand", "225/45R17", "passenger-225-45r17")
+    assert new.mesh().summary()["scaled_jacobian"] > 0.5
+
+
+@pytest.mark.usefixtures("hand_drawn")
+def test_a_section_whose_title_names_no_size_is_refused(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = here / "geometry/hand.toml"
+    file.write_text(file.read_text(encoding="utf-8").replace("205/55R16 passenger", "A passenger"), encoding="utf-8")
+    assert main(["new", "tyre", "225/45R17", "--from", "studies/hand"]) == 2
+    assert "names no size to scale from" in capsys.readouterr().err

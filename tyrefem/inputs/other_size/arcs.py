@@ -39,7 +39,7 @@ def scaled_arcs(data: Mapping[str, Any], old: Section, before: Drawn, after: Dra
     from scipy.optimize import least_squares
 
     assert isinstance(old.line, TwoArcs)
-    a, b = _ratio(before.rules, after.rules, "section_width"), _height(after.rules) / _height(before.rules)
+    a, b = ratio(before.rules, after.rules, "section_width"), height(after.rules) / height(before.rules)
     rim = after.rules["rim_diameter"].value / 2
     bead = rim + old.line.bead[1] - before.rules["rim_diameter"].value / 2
     width = a * old.overall_width
@@ -69,11 +69,11 @@ def scaled_arcs(data: Mapping[str, Any], old: Section, before: Drawn, after: Dra
     return trial(fit.x)
 
 
-def _ratio(before: Rules, after: Rules, name: str) -> float:
+def ratio(before: Rules, after: Rules, name: str) -> float:
     return after[name].value / before[name].value
 
 
-def _height(rules: Rules) -> float:
+def height(rules: Rules) -> float:
     """Height of the section above the rim, m."""
     return (rules["outer_diameter"].value - rules["rim_diameter"].value) / 2
 
@@ -87,7 +87,7 @@ def _parts(data: Mapping[str, Any], before: Drawn, after: Drawn, a: float, b: fl
     if "outer_diameter" not in parameters:
         raise InputError("missing; a section of two arcs scales by it", field="parameters.outer_diameter")
     parameters["outer_diameter"] = scaled(
-        parameters["outer_diameter"], _ratio(before.rules, after.rules, "outer_diameter"), DIGITS
+        parameters["outer_diameter"], ratio(before.rules, after.rules, "outer_diameter"), DIGITS
     )
     nominal = after.size.width / before.size.width
     parameters["nominal_width"] = scaled(parameters["nominal_width"], nominal, DIGITS)
@@ -98,7 +98,17 @@ def _parts(data: Mapping[str, Any], before: Drawn, after: Drawn, a: float, b: fl
         parameters["overall_width"] = scaled(parameters["overall_width"], a, DIGITS)
     for name in [name for name in parameters if name.startswith("flange_")]:
         parameters.pop(name)
-    plies, tread = (_ratio(before.rules, after.rules, name) for name in ("plies", "tread_gauge"))
+    scale_gauges(new, data, before, after)
+    if rating is not None:
+        scale_rating(rating, before, after)
+    new["title"] = f"{after.size.text} scaled from: {data['title']}"
+    parameters["source"] = f"scaled to {after.size.text}; before: {parameters['source']}"
+    return new
+
+
+def scale_gauges(new: dict[str, Any], data: Mapping[str, Any], before: Drawn, after: Drawn) -> None:
+    """Thickness of the layers: carcass and bead by the number of plies, tread by the rules' tread; others stay."""
+    plies, tread = (ratio(before.rules, after.rules, name) for name in ("plies", "tread_gauge"))
     factors = {"carcass": plies, "bead": plies, "tread": tread}
     section = build(SectionCard.check(data))
     for layer, built in zip(new["layers"], section.layers, strict=True):
@@ -111,21 +121,36 @@ def _parts(data: Mapping[str, Any], before: Drawn, after: Drawn, a: float, b: fl
             ],
         }
         layer["source"] = f"scaled to {after.size.text}; before: {layer['source']}"
-    if rating is not None:
-        rating |= {
-            "width": scaled(rating["width"], nominal, DIGITS),
-            "diameter": scaled(rating["diameter"], _ratio(before.rules, after.rules, "outer_diameter"), DIGITS),
-            "load": after.rules["rated_load"].text,
-            "pressure": after.rules["rated_pressure"].text,
-            "bead_wire_area": scaled(
-                rating["bead_wire_area"], _ratio(before.rules, after.rules, "bead_wire_area"), DIGITS
-            ),
-            "source": after.rules.sources("rated_load", "rated_pressure")
-            + f"; scaled from {before.size.text}: bead_wire_area by the rules, cord_angle as it was",
-        }
-    new["title"] = f"{after.size.text} scaled from: {data['title']}"
-    parameters["source"] = f"scaled to {after.size.text}; before: {parameters['source']}"
-    return new
+
+
+def scale_rating(rating: dict[str, Any], before: Drawn, after: Drawn) -> None:
+    """Load and pressure of the new size; its width and diameter, and the bead wires by the rules."""
+    nominal = after.size.width / before.size.width
+    rating |= {
+        "width": scaled(rating["width"], nominal, DIGITS),
+        "diameter": scaled(rating["diameter"], ratio(before.rules, after.rules, "outer_diameter"), DIGITS),
+        "load": after.rules["rated_load"].text,
+        "pressure": after.rules["rated_pressure"].text,
+        "bead_wire_area": scaled(rating["bead_wire_area"], ratio(before.rules, after.rules, "bead_wire_area"), DIGITS),
+        "source": after.rules.sources("rated_load", "rated_pressure")
+        + f"; scaled from {before.size.text}: bead_wire_area by the rules, cord_angle as it was",
+    }
+
+
+def scale_along(new: dict[str, Any], data: Mapping[str, Any], along: float) -> None:
+    """Lengths along the meridian times a factor: tables of the layers, ends of parts, grooves."""
+    for name in ("meridian_length", "bead_length", "rim_length", "shoulder_s"):
+        if name in data["parameters"]:
+            new["parameters"][name] = scaled(data["parameters"][name], along, DIGITS)
+    for layer, before in zip(new["layers"], data["layers"], strict=True):
+        layer["s"] = scaled(before["s"], along, DIGITS)
+        for region, old in zip(layer["regions"], before["regions"], strict=True):
+            _scale_end(region, old, along)
+    for boundary, old in zip(new["boundaries"], data["boundaries"], strict=True):
+        _scale_end(boundary, old, along)
+    if "grooves" in new:
+        new["grooves"]["at"] = scaled(data["grooves"]["at"], along, DIGITS)
+        new["grooves"]["width"] = scaled(data["grooves"]["width"], along, DIGITS)
 
 
 def _with_arcs(start: Mapping[str, Any], data: Mapping[str, Any], factors: Array) -> dict[str, Any]:
@@ -137,23 +162,12 @@ def _with_arcs(start: Mapping[str, Any], data: Mapping[str, Any], factors: Array
     if "shoulder_fraction" in parameters:
         parameters["shoulder_fraction"] = scaled(parameters["shoulder_fraction"], shoulder, DIGITS)
     parameters["sidewall_radius"] = scaled(data["parameters"]["sidewall_radius"], sidewall, DIGITS)
-    for name in ("meridian_length", "bead_length", "rim_length"):
-        if name in data["parameters"]:
-            parameters[name] = scaled(data["parameters"][name], along, DIGITS)
-    for layer, before in zip(new["layers"], data["layers"], strict=True):
-        layer["s"] = scaled(before["s"], along, DIGITS)
-        for region in layer["regions"]:
-            _scale_end(region, along)
-    for boundary in new["boundaries"]:
-        _scale_end(boundary, along)
-    if "grooves" in new:
-        new["grooves"]["at"] = scaled(data["grooves"]["at"], along, DIGITS)
-        new["grooves"]["width"] = scaled(data["grooves"]["width"], along, DIGITS)
+    scale_along(new, data, along)
     return new
 
 
-def _scale_end(part: dict[str, Any], along: float) -> None:
+def _scale_end(part: dict[str, Any], before: Mapping[str, Any], along: float) -> None:
     """A length of a part's end; the name of a mark stays."""
-    end = part.get("to")
+    end = before.get("to")
     if isinstance(end, str) and not end.replace("_", "").isalpha():
         part["to"] = scaled(end, along, DIGITS)

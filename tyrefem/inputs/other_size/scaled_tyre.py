@@ -11,10 +11,12 @@ from typing import Any
 from tyrefem import library
 from tyrefem.errors import InputError
 from tyrefem.geometry import Section, SectionCard, build, load
-from tyrefem.inputs.other_size.arcs import scaled_arcs
+from tyrefem.inputs.changes import scaled
+from tyrefem.inputs.other_size.arcs import DIGITS, scaled_arcs
 from tyrefem.inputs.other_size.drive import Ratios, scaled_drive, scaled_mechanics, scaled_rim
 from tyrefem.inputs.other_size.notes import Notes
 from tyrefem.inputs.other_size.places import carried, same_depth
+from tyrefem.inputs.other_size.points import scaled_points
 from tyrefem.inputs.other_size.source import OF_SIZE, SourceTyre, source_tyre
 from tyrefem.inputs.study import StudyData
 from tyrefem.sizes import Drawn, completed_materials, draw_size, parse_size
@@ -109,16 +111,18 @@ def _section(
         text = section_text(after, command)
         return text, build(SectionCard.check(after.data))
     data, _, _ = library.load("section", study.data["section"], study.folder)
-    scaled = scaled_arcs(data, old, source.drawn, after)
-    new = build(SectionCard.check(scaled))
+    by_arcs = data["line"]["kind"] == "two-arcs"
+    stretched = (scaled_arcs if by_arcs else scaled_points)(data, old, source.drawn, after)
+    new = build(SectionCard.check(stretched))
     notes.scale(
-        f"section, {sizes}: two arcs stretched to {1e3 * new.overall_width:.1f} x {1e3 * new.outer_diameter:.1f} mm; "
+        f"section, {sizes}: {'two arcs' if by_arcs else 'line through points'} stretched to "
+        f"{1e3 * new.overall_width:.1f} x {1e3 * new.outer_diameter:.1f} mm; "
         "tables along the meridian with its length; carcass and bead by the plies, tread by the rules' tread"
     )
     if "inner_volume" in data["parameters"]:
         notes.drop("inner_volume of the section: measured")
     head = [f"# {after.size.text} scaled from {old.name}. Written by: {command}", *notes.lines, ""]
-    return "\n".join([*head, *table_lines(scaled), ""]), new
+    return "\n".join([*head, *table_lines(stretched), ""]), new
 
 
 def _study(
@@ -169,7 +173,22 @@ def _materials(study: StudyData, source: SourceTyre, after: Drawn, notes: Notes)
         notes.scale("materials: radii of the cord angles, cords of plies and bead wires by the rules of the size")
     else:
         notes.keep("materials")
+        factor = after.rules["outer_diameter"].value / source.drawn.rules["outer_diameter"].value
+        moved = {region: _with_places(card, factor) for region, card in cards.items()}
+        if moved != cards:
+            notes.scale("materials: radii of the cord angles with the outer diameter")
+        cards = moved
     return {region: library.located("material", card, study.folder) for region, card in cards.items()}
+
+
+def _with_places(card: Any, factor: float) -> Any:
+    """A card's table with its radii on the tyre times a factor."""
+    if not isinstance(card, Mapping):
+        return card
+    return {
+        key: scaled(value, factor, DIGITS) if key in OF_PLACE else _with_places(value, factor)
+        for key, value in card.items()
+    }
 
 
 def _merged(base: Any, mine: Any, other: Any) -> Any:

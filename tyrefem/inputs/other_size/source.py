@@ -64,7 +64,7 @@ def source_tyre(study: StudyData) -> SourceTyre:
 
     Raises
     ------
-    InputError : its section names no size, or is drawn by hand and no section of two arcs.
+    InputError : its section names no size.
     """
     reference = study.data["section"]
     changes = dict(reference) if isinstance(reference, Mapping) else {}
@@ -85,12 +85,6 @@ def source_tyre(study: StudyData) -> SourceTyre:
         laid = tuple(key for key in changes if key not in ("base", "parameters"))
         laid += tuple(key for key in changes.get("parameters", {}) if key != "thickness_scale")
         return SourceTyre(drawn, draw_size(by_size[1]), given, True, scales, (*edited, *laid))
-    if data.get("line", {}).get("kind") != "two-arcs":
-        message = (
-            f"section '{name}' is drawn by hand on points; sections scale that are written by a size (tyrefem new "
-            "section SIZE) or that have two arcs"
-        )
-        raise InputError(message, field="--from", file=path)
     drawn = draw_size(_size_in(str(data.get("title", "")), name))
     return SourceTyre(drawn, drawn, {}, False, {})
 
