@@ -27,7 +27,7 @@ ALLOWED = {
     "output/__init__.py: _written = {}": "the folders that the command in work has written to",
     "variants/answers.py: _FUNCTIONS = []": "the functions that answer, registered when modules are read",
     "variants/task.py: _folders = []": "the temporary folder of this process, one",
-    "diagnose/evaluations.py: _MODEL = []": "the forward model of a worker process, given when it starts",
+    "diagnose/evaluations.py: _MODEL = {}": "the latest forward model of a worker process, one",
     "diagnose/blind_rates.py: _TEST = []": "the blind test of a worker process, given when it starts",
     "compare/runs.py: _TYRES = {}": "the drives of a comparison, taken out when it ends",
     "cards/__init__.py: cache(_plausible)": "one value for every class of card",

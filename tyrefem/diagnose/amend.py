@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -68,12 +67,12 @@ def amended(study: StudyData, change: Sequence[Change]) -> StudyData:
         for key in each.unknown.keys or (each.unknown.key,):
             new = new.replace({key: _written_value(study, each, key), **_provenance(study, each, key)})
     runs = [dict(entry) for entry in new.data.get("measured", [])]
-    for unknown, x in totals.items():
-        if unknown.effect is None and unknown.key.startswith("drive."):
-            key = unknown.key.removeprefix("drive.")
+    for each in base:
+        if each.unknown.key.startswith("drive."):
+            key = each.unknown.key.removeprefix("drive.")
             for entry in runs:
                 if key in entry.get("drive", {}):
-                    entry["drive"] = {**entry["drive"], key: scaled(entry["drive"][key], math.exp(x), 5)}
+                    entry["drive"] = {**entry["drive"], key: _scaled(entry["drive"][key], each)}
     if runs != new.data.get("measured", []):
         new = new.replace({"measured": runs})
     entries = [dict(entry) for entry in new.data.get("effects", [])]
@@ -102,7 +101,11 @@ def amended(study: StudyData, change: Sequence[Change]) -> StudyData:
 
 def _written_value(study: StudyData, change: Change, key: str) -> Any:
     """A changed base number in the units of the study, rounded to a hundredth of its standard deviation."""
-    written = value_at(study.data, key, study.folder)
+    return _scaled(value_at(study.data, key, study.folder), change)
+
+
+def _scaled(written: Any, change: Change) -> Any:
+    """A written base number after a change."""
     digits = max(3, int(np.ceil(-np.log10(max(change.sd, 1e-6) / 100))) + 1)
     return scaled(written, change.unknown.value(change.x), digits)
 

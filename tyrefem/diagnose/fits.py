@@ -91,6 +91,14 @@ class FittedSet(Brief):
         """Whether the fit is not settled, and explains the data well enough to be continued."""
         return not self.settled and self.misfit < self.state.settings.slow_misfit * self.readings
 
+    @property
+    def worth_continuing(self) -> bool:
+        """Whether further steps may lead a first fit near the data: the misfit that the linear model predicts counts.
+
+        The first steps of a strong effect may still be far off.
+        """
+        return -2 * self.log_evidence < self.state.settings.continued_misfit * self.readings
+
     @cached_property
     def values(self) -> dict[Unknown, float]:
         """Unknown -> x; 1 for effects without amplitude."""

@@ -178,11 +178,10 @@ class ForwardModel(Brief):
             ]
         )
 
-    def full(self, number: int, study: StudyData) -> Array:
-        """Block means at a drive from a full run; ``study``: the study at that drive."""
-        readings = run(study).readings
-        times = readings["time_s"].to_numpy(dtype=float)
-        return self.blocks(number, times, {str(name): readings[name] for name in readings})
+    def history(self, study: StudyData) -> Array:
+        """(1 + n_sensors, n_times): times, s, and readings of `sensors` by a full run; ``study``: at a drive."""
+        table = run(study).readings
+        return np.array([table[name].to_numpy(dtype=float) for name in ("time_s", *self.sensors)])
 
     @property
     def sensors(self) -> tuple[str, ...]:
@@ -190,23 +189,19 @@ class ForwardModel(Brief):
         lumped = isinstance(self.study.card.boundaries.rim, LumpedRim)
         return (*self.study.sensors, GAS, RIM) if lumped else (*self.study.sensors, GAS)
 
-    def response(self, number: int, unknowns: Sequence[Unknown]) -> tuple[Array, Array, Array, Array, Array]:
-        """Contents of a `DriveResponse` as arrays: times; readings, correction and slopes stacked by sensor; modes."""
+    def base_readings(self, number: int) -> tuple[Array, Array]:
+        """Times (n,), s, and readings (n_sensors, n) of `sensors` at x = 0, by the fixed-step simulation."""
         base = self.base(number)
-        fine = run(self.driven(self.study, number)).readings
-        times = fine["time_s"].to_numpy(dtype=float)
-        readings = np.array([base.readings[sensor] for sensor in self.sensors])
-        exact = np.array([np.interp(base.grid, times, fine[sensor].to_numpy(dtype=float)) for sensor in self.sensors])
+        return base.grid, np.array([base.readings[sensor] for sensor in self.sensors])
+
+    def response(self, number: int, unknowns: Sequence[Unknown]) -> tuple[Array, Array, Array, Array]:
+        """Times and readings of `base_readings`, slopes stacked by sensor, and modes: see `DriveResponse`."""
+        base = self.base(number)
         varied = self._varied(base, base.study, unknowns, {})
         slopes = varied.slopes(self.sensors)
         stacked = np.array([slopes[sensor] for sensor in self.sensors])
-        return (
-            base.grid,
-            readings,
-            exact - readings,
-            stacked,
-            modes_of(base, varied.of_tangents, varied.tangents, self.settings),
-        )
+        modes = modes_of(base, varied.of_tangents, varied.tangents, self.settings)
+        return (*self.base_readings(number), stacked, modes)
 
     def jacobian(self, number: int, unknowns: Sequence[Unknown], at: Values) -> Array:
         """(n_blocks, n_unknowns): d(block mean)/dx with unknowns at ``at``."""

@@ -135,8 +135,7 @@ class _Progress:
                 fit.misfit
                 < (settings.continued_twice_misfit if times else settings.none_continued_misfit) * fit.readings
             )
-        # The first steps of a strong effect may still be far off, so the misfit predicted by the linear model counts.
-        return -2 * fit.log_evidence < settings.continued_misfit * fit.readings
+        return fit.worth_continuing
 
     def extend_none(self) -> None:
         """Estimate all single effects and pairs in the linear model about the fit of no effect."""

@@ -86,8 +86,9 @@ def missing_heat_fitted(
     """
     chosen = pursuit(residuals, unknown)
     whole = (Candidate("not-in-the-catalogue", (), chosen),)
-    first = first_fits(residuals, predictions, [whole], {whole: null} if null.close else {}, tick)
-    (fit,) = continued(residuals, predictions, first, tick)
+    (fit,) = first_fits(residuals, predictions, [whole], {whole: null} if null.close else {}, tick)
+    if fit.worth_continuing:
+        (fit,) = continued(residuals, predictions, [fit], tick)
     J = fit.linear.jacobian
     other = [number for number, each in enumerate(fit.unknowns) if each not in chosen]
     origin = residuals.linear(residuals.fitted)

@@ -10,7 +10,7 @@ from typing import Any, TypedDict
 from tyrefem.compare.experiment import ColumnNames
 from tyrefem.diagnose.candidates import CandidateSpace, catalogue_candidates
 from tyrefem.diagnose.criterion import Criterion, LogEvidence
-from tyrefem.diagnose.evaluations import ProgressStore
+from tyrefem.diagnose.evaluations import ProgressStore, WorkerModels
 from tyrefem.diagnose.exhaustive import Exhaustive
 from tyrefem.diagnose.forward_model import DriveResponse
 from tyrefem.diagnose.forward_selection import ForwardSelection
@@ -48,9 +48,10 @@ class Method:
 
 @dataclass(frozen=True)
 class SimulationWork:
-    """Execution of the simulations of a diagnosis, see `DiagnosisOptions`."""
+    """Execution of the simulations of a diagnosis, see `DiagnosisOptions`; ``pool``: processes of all its looks."""
 
     workers: int = 1
+    pool: WorkerModels | None = None
     progress: Tick | None = None
     known: Sequence[DriveResponse] | None = None
     rerun: bool = True

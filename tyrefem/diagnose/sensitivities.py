@@ -165,14 +165,54 @@ def responses(
     if tick and near is not None:
         tick(f"solving the strain cycle of every drive for {len(near.numbers)} changed numbers", 0, 0)
     answers = evaluations.of("response", [(number, unknowns) for number in range(count)], step)
+    fine = _full_runs(evaluations)
+    return tuple(
+        _response(evaluations, unknowns, (times, readings), history, slopes, Modes(V))
+        for (times, readings, slopes, V), history in zip(answers, fine, strict=True)
+    )
+
+
+def responses_like(
+    evaluations: Evaluations, unknowns: tuple[Unknown, ...], like: Sequence[DriveResponse]
+) -> tuple[DriveResponse, ...]:
+    """Responses with the readings of this model, and with sensitivities and modes of a similar one's; () without them.
+
+    ``like``: responses of the similar model. It may have further unknowns, and other origins of them.
+    """
+    columns = {unknown.key: column for column, unknown in enumerate(like[0].unknowns)} if like else {}
+    if any(unknown.key not in columns for unknown in unknowns) or tuple(like[0].slopes) != evaluations.model.sensors:
+        return ()
+    kept = [columns[unknown.key] for unknown in unknowns]
+    readings = evaluations.of("base_readings", [(number,) for number in range(len(like))])
+    fine = _full_runs(evaluations)
+    return tuple(
+        _response(evaluations, unknowns, here, history, np.array(list(near.slopes.values()))[:, :, kept], near.modes)
+        for here, history, near in zip(readings, fine, like, strict=True)
+    )
+
+
+def _full_runs(evaluations: Evaluations) -> list[Array]:
+    """The history of every drive by a full run of the study."""
+    model = evaluations.model
+    return evaluations.histories([model.driven(model.study, number) for number in range(len(model.drives))])
+
+
+def _response(
+    evaluations: Evaluations,
+    unknowns: tuple[Unknown, ...],
+    here: tuple[Array, Array],
+    history: Array,
+    slopes: Array,
+    modes: Modes,
+) -> DriveResponse:
+    """A response from tables whose rows are the model's sensors."""
+    (times, readings), sensors = here, evaluations.model.sensors
+    correction = np.array([np.interp(times, history[0], fine) for fine in history[1:]]) - readings
 
     def by_sensor(table: Array) -> dict[str, Array]:
-        return dict(zip(model.sensors, table, strict=True))
+        return dict(zip(sensors, table, strict=True))
 
-    return tuple(
-        DriveResponse(unknowns, times, by_sensor(readings), by_sensor(correction), by_sensor(slopes), Modes(V))
-        for times, readings, correction, slopes, V in answers
-    )
+    return DriveResponse(unknowns, times, by_sensor(readings), by_sensor(correction), by_sensor(slopes), modes)
 
 
 def sensitivities(

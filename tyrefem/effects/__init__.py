@@ -24,7 +24,7 @@ from tyrefem.effects.effect import Effect, Parameter, Prior, complaint
 from tyrefem.effects.shapes import with_checked_shapes
 from tyrefem.effects.state import EffectState
 from tyrefem.errors import InputError, PluginWarning, nearest
-from tyrefem.plugins import Kind, Origin, registry, use
+from tyrefem.plugins import Kind, Origin, Registry, registry, use
 from tyrefem.plugins.environment import FOLDERS
 
 __all__ = ["Effect", "EffectOf", "EffectState", "Parameter", "Prior", "catalogue", "use_effects"]
@@ -101,9 +101,13 @@ def catalogue() -> dict[str, type[Effect]]:
     >>> "hot-road" in catalogue()
     True
     """
-    effects = shipped_effects()
-    plugins = registry().classes(KIND)
-    return dict(sorted({**effects, **plugins}.items())) if plugins else dict(effects)
+    return dict(_all_effects(registry()))
+
+
+@functools.lru_cache(maxsize=4)
+def _all_effects(plugins: Registry) -> dict[str, type[Effect]]:
+    """`catalogue` with given plugins; not to be changed."""
+    return dict(sorted({**shipped_effects(), **plugins.classes(KIND)}.items()))
 
 
 class EffectOf:
@@ -112,9 +116,10 @@ class EffectOf:
     def __call__(self, value: Any) -> Any:
         if not isinstance(value, Mapping):
             raise InputError(f"must be a table with a name, not {value!r:.40}")
-        known = catalogue()
+        plugins = registry()
+        known = _all_effects(plugins)
         name = value.get("name")
-        registry().refuse(KIND, name, known=isinstance(name, str) and name in known)
+        plugins.refuse(KIND, name, known=isinstance(name, str) and name in known)
         if not isinstance(name, str) or name not in known:
             raise InputError(f"unknown effect {name!r:.40}{nearest(str(name), known)}", field="name")
         effect, entry = known[name], {key: entry for key, entry in value.items() if key != "name"}

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.boundaries.rim import LumpedRim
+from tyrefem.cache import Cache
 from tyrefem.conduction import Conduction, Film, Material, Reservoir
 from tyrefem.conduction.added_states import AddedStates, BodyTemperatures
 from tyrefem.effects.combined import Source
@@ -30,6 +31,8 @@ from tyrefem.simulation.sliding_tread import SlidingTread
 from tyrefem.simulation.surroundings import GAS, RIM, Surroundings
 
 Array = NDArray[np.float64]
+#: Meshes with strain zones: a changed gauge is simulated at every drive.
+_MESHES: Cache[TyreMesh] = Cache(size=12)
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,7 +117,11 @@ class RollingTyre(Surroundings):
             study, other = self.study, like.study
             if study.section == other.section and study.card.mesh == other.card.mesh and zones == like.schedule.zones:
                 return like.mesh
-        return self.study.mesh().with_zones({zone.name: (zone.region, zone.start, zone.end) for zone in zones})
+        named = {zone.name: (zone.region, zone.start, zone.end) for zone in zones}
+        if self.study.card.mesh.file is not None:
+            return self.study.mesh().with_zones(named)
+        key = self.study.section, repr(self.study.card.mesh), tuple(named.items())
+        return _MESHES.get(key, lambda: self.study.mesh().with_zones(named))
 
     @functools.cached_property
     def bodies(self) -> dict[str, Material]:
