@@ -20,13 +20,13 @@ from tyrefem.diagnose.evaluations import Evaluations
 from tyrefem.diagnose.exhaustive import Exhaustive
 from tyrefem.diagnose.forward_model import FOLLOWED, NO_ANSWER, NOT_FOLLOWED, DriveResponse, ForwardModel
 from tyrefem.diagnose.multifidelity import DriveCertificate, Predictions
-from tyrefem.diagnose.ranking import Ranking, allowed_error
 from tyrefem.diagnose.reduced_forward import Modes, ReducedDrive
 from tyrefem.diagnose.runs import measured_drive
 from tyrefem.diagnose.sensitivities import responses, unknowns_of
 from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
 from tyrefem.diagnose.unknowns import Unknown, with_values
 from tyrefem.diagnose.verdict import NO_GAP, UNEXPLAINED, Judgement, RankedSet
+from tyrefem.diagnose.workflow import Ranking, allowed_error
 from tyrefem.effects import catalogue
 
 Array = NDArray[np.float64]

@@ -51,12 +51,12 @@ class SimulationWork:
     """Execution of the simulations of a diagnosis, see `DiagnosisOptions`; ``pool``: processes of all its looks."""
 
     workers: int = 1
-    pool: WorkerModels | None = None
     progress: Tick | None = None
     known: Sequence[DriveResponse] | None = None
     rerun: bool = True
     store: ProgressStore | None = None
     verdict_only: bool = False
+    pool: WorkerModels | None = None
 
     def look(self, number: int) -> SimulationWork:
         """The options for the look with this number; 0 is the first look."""
