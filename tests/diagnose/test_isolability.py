@@ -13,6 +13,8 @@ from typer.testing import CliRunner
 
 from tyrefem.cli import app
 from tyrefem.diagnose.candidates import Candidate, SetPrior
+from tyrefem.diagnose.discrepancy import other_structure
+from tyrefem.diagnose.energy_shapes import SHAPE
 from tyrefem.diagnose.evaluations import Evaluations
 from tyrefem.diagnose.forward_model import ForwardModel
 from tyrefem.diagnose.isolability import (
@@ -28,6 +30,7 @@ from tyrefem.diagnose.linear_model import LinearModel
 from tyrefem.diagnose.sensitivities import Sensitivities
 from tyrefem.diagnose.unknowns import of_effect
 from tyrefem.effects import catalogue
+from tyrefem.inputs.name_patterns import SCALES
 
 
 @pytest.fixture(scope="module")
@@ -83,6 +86,18 @@ def test_twice_the_noise_needs_a_stronger_effect(
     again = layout_sensitivities(Evaluations(model), case.diagnosis.gap.responses)
     assert (isolability(louder, known=again).seen >= isolability_result.seen).all()
     assert (isolability(louder, known=again).seen > isolability_result.seen).any()
+
+
+def test_beside_another_strain_energy_what_imitates_it_is_not_seen(case: Case, known: Sensitivities) -> None:
+    design, beside = known.design(known.fitted), other_structure(known)
+    wave = next(unknown for unknown in design.unknowns if unknown.effect == SHAPE)
+    road = next(unknown for unknown in design.unknowns if unknown.effect == "hot-road")
+    of_wave, of_road = (unknown.sd * design.jacobian[:, design.place[unknown]] for unknown in (wave, road))
+    assert np.linalg.norm(of_wave) > 3 > 1 > np.linalg.norm(beside.whitened(of_wave))
+    assert np.linalg.norm(of_road) > np.linalg.norm(beside.whitened(of_road)) > 3
+    films = [unknown.key for unknown in design.unknowns if unknown.key.startswith(SCALES)]
+    fewer = other_structure(known, films)
+    assert beside.fitted.shape[1] - fewer.fitted.shape[1] == len(films) > 0
 
 
 def test_the_printed_table_has_the_units_of_study_files(isolability_result: Isolability) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from tyrefem.diagnose.candidates import Candidate, Members, SetPrior, catalogue_candidates
 from tyrefem.diagnose.diagnosis import DiagnosisData
+from tyrefem.diagnose.discrepancy import other_structure
 from tyrefem.diagnose.discrepancy_record import possible_effects
 from tyrefem.diagnose.evaluations import Evaluations, evaluating
 from tyrefem.diagnose.forward_model import DriveResponse, ForwardModel
@@ -202,12 +203,16 @@ def measured(
 
 @dataclass(frozen=True, eq=False)
 class BlindOutcome:
-    """A blind case and the row of its diagnosis; ``other_model``: the recorded structural differences."""
+    """A blind case and the row of its diagnosis; ``other_model``: the recorded structural differences.
+
+    ``identifiable_alone``: whether the hidden effects could be named if nothing else were wrong.
+    """
 
     case: BlindCase
     identifiable: bool
     diagnosis: dict[str, Any] = field(default_factory=dict)
     other_model: dict[str, Any] | None = None
+    identifiable_alone: bool = False
 
     def to_dict(self) -> dict[str, Any]:
         """A row of ``blind.json``."""
@@ -221,15 +226,21 @@ class BlindOutcome:
                 for unknown in member.amplitudes
             },
             "identifiable": self.identifiable,
-            **({} if self.other_model is None else {"other_model": self.other_model}),
+            **({} if self.other_model is None else self._beside()),
             **self.diagnosis,
         }
 
+    def _beside(self) -> dict[str, Any]:
+        return {"identifiable_alone": self.identifiable_alone, "other_model": self.other_model}
 
-def identifiable(evaluations: Evaluations, known: Sequence[DriveResponse], case: BlindCase) -> bool:
+
+def identifiable(
+    evaluations: Evaluations, known: Sequence[DriveResponse], case: BlindCase, data_model: str = ORDINARY
+) -> bool:
     """Whether the linear model ranks the hidden effects ahead of every other set by `MARGIN`, without noise.
 
-    The signal is the difference of two simulations: with the hidden values, and without. It needs no diagnosis.
+    The signal is the difference of two simulations: with the hidden values, and without. It needs no diagnosis. For
+    structural data the strain energy, gauges and speed laws of films are unknown besides (`other_structure`).
     """
     if not case.hidden:
         return False
@@ -245,8 +256,12 @@ def identifiable(evaluations: Evaluations, known: Sequence[DriveResponse], case:
     )
     candidates = catalogue_candidates(model.study)
     prior = SetPrior(candidates, model.study.card.diagnosis.effects_expected, model.settings.size_shares)
-    linear = LinearModel(sensitive.design(sensitive.fitted), signal)
-    return min(margins(linear, signal, case.hidden, competitors_of(case.hidden, candidates), prior)) >= MARGIN
+    design = sensitive.design(sensitive.fitted)
+    if data_model == STRUCTURAL:
+        beside = other_structure(sensitive, {unknown.key for unknown in hidden})
+        design, signal = replace(design, jacobian=beside.whitened(design.jacobian)), beside.whitened(signal)
+    leads = margins(LinearModel(design, signal), signal, case.hidden, competitors_of(case.hidden, candidates), prior)
+    return min(leads) >= MARGIN
 
 
 def run_case(
@@ -263,12 +278,13 @@ def run_case(
     ``data_model``: one of `DATA_MODELS`.
     """
     with evaluating(ForwardModel(study, planned(study))) as evaluations:
-        is_identifiable = identifiable(evaluations, known, case)
+        alone = identifiable(evaluations, known, case)
+        beside = alone if data_model == ORDINARY else identifiable(evaluations, known, case, data_model)
     model = other_model(study, case) if data_model == STRUCTURAL else None
     data = measured(study, case, mesh=mesh, model=model)
     diagnosis = diagnose(study, data, largest=2, known=known, rerun=False, verdict_only=True, looks=1, reduced=reduced)
     parts = None if model is None else model.to_dict(mesh_of(data_model) if mesh is None else mesh)
-    return BlindOutcome(case, is_identifiable, outcome_row(diagnosis), parts)
+    return BlindOutcome(case, beside, outcome_row(diagnosis), parts, alone)
 
 
 def outcome_row(diagnosis: DiagnosisData) -> dict[str, Any]:

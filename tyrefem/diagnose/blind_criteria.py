@@ -165,8 +165,12 @@ def ordinary_rates(rows: Sequence[Row]) -> dict[str, Rate]:
 
 
 def structural_rates(rows: Sequence[Row]) -> dict[str, Rate]:
-    """Criterion -> rate, for data of another model; the goals are those of the blind benchmark with other models."""
+    """Criterion -> rate, for data of another model; the goals are those of the blind benchmark with other models.
+
+    Effects are identifiable if they could be named beside the strain energy, gauges and films, which are unknown.
+    """
     able = [row for row in of_kind(rows, "one", "two") if row["identifiable"]]
+    alone = [row for row in of_kind(rows, "one", "two") if row.get("identifiable_alone", row["identifiable"])]
     none, outside = of_kind(rows, "none"), of_kind(rows, "outside")
     rates = {
         "identifiable: all hidden effects in the reported set": rate(able, in_set, 0.95),
@@ -174,6 +178,10 @@ def structural_rates(rows: Sequence[Row]) -> dict[str, Rate]:
             able, lambda row: set(row["hidden"]) <= names(row), 0.7
         ),
         "identifiable: some hidden effect named": rate(able, lambda row: bool(set(row["hidden"]) & names(row))),
+        "identifiable if nothing else were wrong: in the reported set": rate(alone, in_set),
+        "identifiable if nothing else were wrong: named or partly identified": rate(
+            alone, lambda row: set(row["hidden"]) <= names(row)
+        ),
         "all cases: confident wrong name": rate(rows, lambda row: bool(false_names(row)), 0.02, at_most=True),
         "nothing hidden: no effect named": rate(none, lambda row: not false_names(row), 0.97),
         "nothing hidden: nothing named, not even a film": rate(none, lambda row: not names(row)),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -14,6 +14,8 @@ from tyrefem.diagnose.energy_shapes import SHAPE
 from tyrefem.diagnose.gauges import FILM_LAWS
 from tyrefem.diagnose.residuals import Residuals
 from tyrefem.diagnose.sampling import SensorSampling
+from tyrefem.diagnose.sensitivities import Sensitivities
+from tyrefem.diagnose.settings import DEFAULT
 from tyrefem.diagnose.shared_error import SharedError
 from tyrefem.diagnose.unknowns import Unknown
 from tyrefem.inputs.name_patterns import SCALES
@@ -119,7 +121,7 @@ def discrepancies(residuals: Residuals) -> Iterator[Discrepancy]:
         yield Discrepancy(READINGS, size, _shared(residuals, _courses(residuals, size)))
 
 
-def films_and_gauges(residuals: Residuals) -> tuple[Unknown, ...]:
+def films_and_gauges(residuals: Residuals | Sensitivities) -> tuple[Unknown, ...]:
     """Speed laws of films and gauges among the unknowns of the residuals, in all runs."""
     further = residuals.unknowns[residuals.nuisance :]
     return tuple(
@@ -149,11 +151,24 @@ def missing_heat_beside(
     return Discrepancy(HEAT, size, _shared(residuals, parts), fitted, width=width)
 
 
+def other_structure(known: Sensitivities, without: Collection[str] = ()) -> SharedError:
+    """Another strain energy, with a smaller part for each run, other gauges, and other speed laws of films; linear.
+
+    ``without``: keys of unknowns that it does not contain.
+    """
+    further = known.unknowns[known.nuisance :]
+    energy = tuple(unknown for unknown in further if unknown.effect == SHAPE)
+    others = [unknown for unknown in films_and_gauges(known) if unknown.key not in without]
+    return _shared(known, [_of_all(known, (*energy, *others), 1.0), _of_runs(known, energy, DEFAULT.energy_of_run)])
+
+
 #: Columns of the readings by run.
 Columns = dict[int, Array]
+#: What has whitened sensitivities by run.
+Known = Residuals | Sensitivities
 
 
-def _shared(residuals: Residuals, parts: Sequence[Columns]) -> SharedError:
+def _shared(residuals: Known, parts: Sequence[Columns]) -> SharedError:
     def stacked(runs: Sequence[int]) -> Array:
         return np.hstack([np.vstack([part[number] for number in runs]) for part in parts])
 
@@ -162,14 +177,14 @@ def _shared(residuals: Residuals, parts: Sequence[Columns]) -> SharedError:
     return SharedError(stacked(residuals.fitted), stacked(held_out) if held_out else np.zeros((0, width)))
 
 
-def _of_all(residuals: Residuals, unknowns: Sequence[Unknown], share: float) -> Columns:
+def _of_all(residuals: Known, unknowns: Sequence[Unknown], share: float) -> Columns:
     """Changes of the readings by one (prior sd x share) of every unknown, which all runs have in common."""
     places = [residuals.unknowns.index(unknown) for unknown in unknowns]
     sd = share * np.array([unknown.sd for unknown in unknowns])
     return {number: J[:, places] * sd for number, J in enumerate(residuals.whitened)}
 
 
-def _of_runs(residuals: Residuals, unknowns: Sequence[Unknown], share: float) -> Columns:
+def _of_runs(residuals: Known, unknowns: Sequence[Unknown], share: float) -> Columns:
     """The same, of every run alone."""
     return _diagonal(_of_all(residuals, unknowns, share))
 
