@@ -104,7 +104,7 @@ def failure_row(entry: dict[str, Any]) -> list[str]:
 
 
 def goals(blind: Blind) -> str:
-    """The rates that have a goal, as a table of the page."""
+    """The rates that have a goal, and those of identifiable effects, as a table of the page."""
     counts = {kind: sum(row["kind"] == kind for row in blind.rows) for kind in ("one", "two", "none", "outside")}
     words = (
         f"{len(blind.rows)} cases, seed {blind.seed}: {counts['one']} with one hidden effect, {counts['two']} with "
@@ -112,10 +112,10 @@ def goals(blind: Blind) -> str:
     )
     lines = [words, "", "| | of | rate | wanted |", "|---|---|---|---|"]
     for name, rate in blind.rates.items():
-        if rate.goal is not None and rate.of:
+        if rate.of and (rate.goal is not None or name.startswith("identifiable")):
             low, high = (100 * x for x in rate.interval)
             share = f"{100 * rate.value:.0f} % ({low:.0f} to {high:.0f})"
-            lines.append(f"| {name} | {rate.right} of {rate.of} | {share} | {rate.wanted} |")
+            lines.append(f"| {name} | {rate.right} of {rate.of} | {share} | {'' if rate.goal is None else rate.wanted} |")
     return "\n".join(lines)
 
 

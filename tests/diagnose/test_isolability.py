@@ -94,7 +94,8 @@ def test_beside_another_strain_energy_what_imitates_it_is_not_seen(case: Case, k
     road = next(unknown for unknown in design.unknowns if unknown.effect == "hot-road")
     of_wave, of_road = (unknown.sd * design.jacobian[:, design.place[unknown]] for unknown in (wave, road))
     assert np.linalg.norm(of_wave) > 3 > 1 > np.linalg.norm(beside.whitened(of_wave))
-    assert np.linalg.norm(of_road) > np.linalg.norm(beside.whitened(of_road)) > 3
+    # The road heats one side, as no strain energy does: part of its signal is left.
+    assert np.linalg.norm(of_road) > np.linalg.norm(beside.whitened(of_road)) > 2
     films = [unknown.key for unknown in design.unknowns if unknown.key.startswith(SCALES)]
     fewer = other_structure(known, films)
     assert beside.fitted.shape[1] - fewer.fitted.shape[1] == len(films) > 0

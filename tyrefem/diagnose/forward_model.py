@@ -183,6 +183,15 @@ class ForwardModel(Brief):
         table = run(study).readings
         return np.array([table[name].to_numpy(dtype=float) for name in ("time_s", *self.sensors)])
 
+    def blocks_of(self, number: int, history: Array) -> Array:
+        """Block means at a drive from a `history`."""
+        times, *readings = history
+        return self.blocks(number, times, dict(zip(self.sensors, readings, strict=True)))
+
+    def full(self, number: int, study: StudyData) -> Array:
+        """Block means at a drive from a full run; ``study``: the study at that drive."""
+        return self.blocks_of(number, self.history(study))
+
     @property
     def sensors(self) -> tuple[str, ...]:
         """All possible sensors: the study's sensors, the contained air, a lumped rim."""

@@ -504,8 +504,4 @@ def _after(
         answers = evaluations.of("predict", [(number, values) for number in numbers])
         return {number: residuals.corrected(number, answer) for number, answer in enumerate(answers)}
     histories = evaluations.histories([amended(residuals.driven(number), change) for number in numbers])
-    sensors = evaluations.model.sensors
-    return {
-        number: evaluations.model.blocks(number, times, dict(zip(sensors, readings, strict=True)))
-        for number, (times, *readings) in enumerate(histories)
-    }
+    return {number: evaluations.model.blocks_of(number, history) for number, history in enumerate(histories)}
