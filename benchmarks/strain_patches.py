@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csr_array
+from scipy.sparse import csr_array, diags_array
 from scipy.spatial import cKDTree
 
 from tyrefem.mechanics.solid.elements import Rings
@@ -50,13 +50,14 @@ class Patches:
     def _cells(self) -> tuple[Array, Array, Array]:
         """Places (2, k, c) and areas (k, c) of cells, m and m2, and values (c, 9) of the polynomials."""
         corners = self.rings.mesh.p[:, self.rings.mesh.t[:, self.elements]]
-        longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=0).max()
-        count = math.ceil(longest / (CELL * self.radius))
-        middles = (np.arange(count) + 0.5) / count
-        x = np.stack([a.ravel() for a in np.meshgrid(middles, middles, indexing="ij")])
+        edges = np.linalg.norm(corners - np.roll(corners, -1, axis=1), axis=0).max(axis=1)
+        # Cells of long elements are many along them, and few across.
+        counts = [math.ceil(max(edges[k], edges[k + 2]) / (CELL * self.radius)) for k in (0, 1)]
+        middles = ((np.arange(count) + 0.5) / count for count in counts)
+        x = np.stack([a.ravel() for a in np.meshgrid(*middles, indexing="ij")])
         mapping = self.rings.mesh.mapping()
         places = np.asarray(mapping.F(x, self.elements))
-        areas = np.abs(np.asarray(mapping.detDF(x, self.elements))) / count**2
+        areas = np.abs(np.asarray(mapping.detDF(x, self.elements))) / math.prod(counts)
 
         def powers(at: Array) -> Array:
             return np.stack([at[0] ** i * at[1] ** j for i in range(3) for j in range(3)], axis=-1)
@@ -84,14 +85,14 @@ class Patches:
             candidates = np.stack([axis.ravel() for axis in grid], axis=-1)
         else:
             candidates = np.asarray(self.centres).T
-        near = cKDTree(flat).query_ball_point(candidates, self.radius)
-        covered = np.array([areas.ravel()[cells].sum() for cells in near])
+        pairs = cKDTree(candidates).sparse_distance_matrix(cKDTree(flat), self.radius, output_type="ndarray")
+        inside = csr_array(
+            (areas.ravel()[pairs["j"]], (pairs["i"], pairs["j"])), shape=(len(candidates), areas.size)
+        )  # fmt: skip
+        covered = np.asarray(inside.sum(axis=1))
         least = COVERED * math.pi * self.radius**2 if self.centres is None else 0.0
         chosen = np.flatnonzero(covered > least)
-        cells = np.concatenate([near[centre] for centre in chosen]).astype(np.int64)
-        rows = np.repeat(np.arange(len(chosen)), [len(near[centre]) for centre in chosen])
-        shares = areas.ravel()[cells] / covered[chosen][rows]
-        of_cells = csr_array((shares, (rows, cells)), shape=(len(chosen), areas.size))
+        of_cells = diags_array(1 / covered[chosen]) @ inside[chosen]
         return candidates[chosen].T, of_cells @ self._at_cells(values)
 
     def _at_cells(self, values: Array) -> Any:

@@ -6,10 +6,12 @@ import os
 import subprocess
 import sys
 from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
 from typing import Any
 
 import pytest
 from hypothesis import settings
+from long_files import LONG
 
 # Child processes that may not keep bytecode would compile the package each time: a quarter of a short command.
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
@@ -22,6 +24,13 @@ if "PYTEST_XDIST_WORKER" in os.environ:
 settings.register_profile("reproducible", derandomize=True, deadline=None)
 settings.register_profile("explore", deadline=None, max_examples=1000)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "reproducible"))
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Long files first."""
+    first = {str(Path(__file__).parent / name): place for place, name in enumerate(LONG)}
+    items.sort(key=lambda item: first.get(str(item.path), len(first)))
+
 
 #: Of a `repr`: lines and letters at most.
 LINES, LETTERS = 20, 2500

@@ -70,7 +70,7 @@ def test_a_road_hot_in_one_run_is_named_in_that_run(diagnosis: DiagnosisData) ->
 
 
 def test_without_single_runs_the_same_data_are_not_explained(owner: tf.Study) -> None:
-    before = owner.diagnose(settings=replace(COARSE, odd_run_share=0.0, looks=1), rerun=False)
+    before = owner.diagnose(settings=replace(COARSE, odd_run_share=0.0, looks=1), rerun=False, verdict_only=True)
     assert not any(candidate.runs for candidate in before.candidates)
     assert before.verdict == UNEXPLAINED or len(before.best.members) > 1
 
@@ -120,7 +120,7 @@ def test_a_folder_gives_verdict_readings_and_amended_study_back(diagnosis: Diagn
 
 
 def test_a_road_hot_in_all_runs_is_named_in_all(tmp_path: Path) -> None:
-    diagnosis = measured(tmp_path, [HOT]).diagnose(settings=replace(COARSE, looks=1), rerun=False)
+    diagnosis = measured(tmp_path, [HOT]).diagnose(settings=replace(COARSE, looks=1), rerun=False, verdict_only=True)
     assert diagnosis.verdict == "identified"
     assert [member.key for member in diagnosis.best.members] == ["hot-road"]
     assert diagnosis.judgement.named["hot-road"] > 0.99

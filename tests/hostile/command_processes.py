@@ -2,35 +2,94 @@
 
 from __future__ import annotations
 
+import atexit
+import functools
+import json
 import os
+import resource
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from every_command import Command, commands
 
-Process = subprocess.Popen[str]
 #: Commands that answer at once, by their first word; the others compute something.
 AT_ONCE = {"check", "list", "new", "road", "schema", "show", "slide"}
 COMPUTING = [each for each in commands() if each.words.split()[0] not in AT_ONCE]
+#: Commands whose interpreter is always a new one, which imports while it works.
+NEW = ("run", "sweep", "rig simulate")
 
 
-def started(command: Command, out: Path, prepare: Callable[[], None] | None = None, **variables: str) -> Process:
-    """The command as a process, and group, of its own; with further environment variables."""
+@dataclass
+class Process:
+    """A running command in a group of its own. ``poll`` : its exit code, or None; ``err`` : the file of its stderr."""
+
+    pid: int
+    poll: Callable[[], int | None]
+    err: Path
+
+
+def started(command: Command, out: Path, *, largest_file: int = 0, new: bool = False) -> Process:
+    """The command as a process: ``new`` or one of `NEW`: of a new interpreter; else forked (`command_server.py`).
+
+    ``largest_file`` : bytes that no file may exceed.
+    """
+    number, name = tempfile.mkstemp(prefix="stderr-")
+    os.close(number)
+    if not (new or command.words in NEW):
+        request = {"line": command.line(out), "folder": os.getcwd(), "err": name, "largest_file": largest_file}
+        pid = _asked(environment=dict(os.environ), **request)
+        codes: list[int] = []
+
+        def poll() -> int | None:
+            if not codes and (code := _asked(ended=pid)) is not None:
+                codes.append(code)
+            return codes[0] if codes else None
+
+        return Process(pid, poll, Path(name))
 
     def begin() -> None:
         # A shell that runs the tests in the background has them ignore it.
         signal.signal(signal.SIGINT, signal.default_int_handler)
-        if prepare is not None:
-            prepare()
+        if largest_file:
+            resource.setrlimit(resource.RLIMIT_FSIZE, (largest_file, largest_file))
 
-    return subprocess.Popen(
-        [sys.executable, "-m", "tyrefem", *command.line(out)], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-        text=True, start_new_session=True, preexec_fn=begin, env=os.environ | variables,
+    # Python itself would leave bytecode that is cut short.
+    short = {"PYTHONDONTWRITEBYTECODE": "1"} if largest_file else {}
+    with open(name, "w", encoding="utf-8") as err:
+        running = subprocess.Popen(
+            [sys.executable, "-m", "tyrefem", *command.line(out)], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+            stderr=err, start_new_session=True, preexec_fn=begin, env=os.environ | short,
+        )  # fmt: skip
+    return Process(running.pid, running.poll, Path(name))
+
+
+@functools.cache
+def _server() -> subprocess.Popen[str]:
+    """The process that forks; it ends with the tests, when its stdin does."""
+    threads = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
+    server = subprocess.Popen(
+        [sys.executable, str(Path(__file__).with_name("command_server.py"))], stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE, text=True, env=os.environ | threads, cwd=Path(__file__).parent,
     )  # fmt: skip
+    atexit.register(server.communicate)
+    return server
+
+
+def _asked(**request: Any) -> Any:
+    """The server's answer."""
+    server = _server()
+    assert server.stdin is not None
+    assert server.stdout is not None
+    server.stdin.write(json.dumps(request) + "\n")
+    server.stdin.flush()
+    return json.loads(server.stdout.readline())
 
 
 def after_start(out: Path) -> bool:
@@ -57,10 +116,11 @@ def waited(running: Process, moment: Callable[[Path], bool], out: Path) -> None:
 
 def ended(running: Process) -> tuple[int, str]:
     """Exit code and stderr."""
-    try:
-        _, err = running.communicate(timeout=120)
-    finally:
-        if running.poll() is None:
+    until = time.monotonic() + 120
+    while (code := running.poll()) is None:
+        if time.monotonic() > until:
             os.killpg(running.pid, signal.SIGKILL)
-            running.communicate()
-    return running.returncode, err
+        time.sleep(0.01)
+    err = running.err.read_text(encoding="utf-8")
+    running.err.unlink()
+    return code, err

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import small
 from every_command import Command, commands
 from jsonschema import Draft7Validator
 from jsonschema.exceptions import best_match
@@ -127,6 +128,15 @@ def test_every_command_lists_the_plugins_that_take_part(
         assert main(command.line(command.out(here / "new" / words), "--json", "--set", film)) == 0
         used = json.loads(capfd.readouterr().out)["plugins"]
         assert sorted(plugin["name"].split(".")[-1] for plugin in used) == sorted(expected), words
+
+
+def test_a_diagnosis_that_lacks_heat_has_documented_keys_too(here: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    (here / "measured.csv").write_text(small.table(0.3, 0.2), encoding="utf-8")
+    command = next(each for each in commands() if each.words == "diagnose")
+    assert main(command.line(here / "new" / "out", "--json")) == 0
+    out = capfd.readouterr().out
+    assert json.loads(out)["missing_heat"]
+    checked("diagnose", out)
 
 
 def test_no_keys_of_a_command_that_there_is_not() -> None:
