@@ -115,7 +115,9 @@ def goals(blind: Blind) -> str:
         if rate.of and (rate.goal is not None or name.startswith("identifiable")):
             low, high = (100 * x for x in rate.interval)
             share = f"{100 * rate.value:.0f} % ({low:.0f} to {high:.0f})"
-            lines.append(f"| {name} | {rate.right} of {rate.of} | {share} | {'' if rate.goal is None else rate.wanted} |")
+            lines.append(
+                f"| {name} | {rate.right} of {rate.of} | {share} | {'' if rate.goal is None else rate.wanted} |"
+            )
     return "\n".join(lines)
 
 

@@ -85,7 +85,15 @@ def why_elsewhere(command: str) -> str | None:
     return next((reason for pattern, reason in ELSEWHERE.items() if re.fullmatch(pattern, plain)), None)
 
 
-HERE = [command for command in COMMANDS if why_elsewhere(command) is None]
+def without_place(command: str) -> tuple[str, ...]:
+    """The words of a command, without the place of its results."""
+    words = shlex.split(command)
+    place = words.index("--out") if "--out" in words else len(words)
+    return (*words[:place], *words[place + 2 :])
+
+
+#: Commands that run here; those that differ in the place of their results alone run once.
+HERE = list({without_place(each): each for each in reversed(COMMANDS) if why_elsewhere(each) is None}.values())[::-1]
 
 
 def short(command: str) -> list[str]:
