@@ -19,6 +19,8 @@ from tyrefem.interruption import interruption_delayed
 
 #: Python's option that hides the tracker's warning.
 LEFT_BEHIND = "ignore:resource_tracker:UserWarning"
+#: Environment variables from which libraries for linear algebra take their number of threads when they are loaded.
+THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 
 class _ProcessWithoutCtrlC(SpawnProcess):
@@ -80,7 +82,9 @@ def _begin(begin: Callable[..., None] | None, given: tuple[Any, ...]) -> None:
     # Where a signal cannot be blocked, as on Windows, it is ignored.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with_parent, daemon=True).start()
+    # Libraries that are loaded already, and those that the first task loads.
     threadpool_limits(1, user_api="blas")
+    os.environ.update(dict.fromkeys(THREADS, "1"))
     if begin is not None:
         begin(*given)
 

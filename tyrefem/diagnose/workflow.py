@@ -10,6 +10,7 @@ from typing import Any, Unpack
 
 from tyrefem.brief import Brief
 from tyrefem.compare.experiment import ColumnNames, Table, experiments
+from tyrefem.conduction.linear_solver import one_thread
 from tyrefem.diagnose.amend import Change, amended, changes
 from tyrefem.diagnose.better_law import by_better_law
 from tyrefem.diagnose.candidates import (
@@ -116,7 +117,8 @@ def diagnose(study: StudyData, table: Table | None = None, **options: Unpack[Dia
     if wave.onset is not None:
         method = replace(method, candidates=WithWave(method.candidates, wave))
     looks: list[DiagnosisData] = []
-    with worker_models(work.workers) as pool:
+    # The matrices are small: further threads of this process would only take time from the workers.
+    with one_thread(), worker_models(work.workers) as pool:
         work = replace(work, pool=pool)
         while not looks or (looks[-1].verdict == IDENTIFIED and len(looks) < method.settings.looks):
             further = work.look(len(looks))
