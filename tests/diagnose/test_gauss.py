@@ -95,3 +95,22 @@ def test_beyond_says_how_far_the_data_want_a_parameter_off_its_bound(beyond: flo
     high = np.array([1.0, np.inf, np.inf])
     fit = posterior(J.T @ J, overlap, sd, np.full(3, -np.inf), high)
     np.testing.assert_allclose(fit.beyond, [beyond, 0.0, 0.0], rtol=1e-9)
+
+
+@pytest.mark.parametrize("low, high", [(-np.inf, np.inf), (-0.5, np.inf), (0.0, 0.9), (1.7, 4.0), (-3.0, -1.0)])
+@pytest.mark.parametrize("overlap", [8.0, -8.0, 0.0])
+def test_one_unknown_is_as_beside_another_that_the_data_do_not_know(low: float, high: float, overlap: float) -> None:
+    alone = posterior(np.array([[4.0]]), np.array([overlap]), np.array([0.7]), np.array([low]), np.array([high]))
+    wide = np.array([np.inf])
+    both = posterior(
+        np.diag([4.0, 0.0]),
+        np.array([overlap, 0.0]),
+        np.array([0.7, 1.3]),
+        np.concatenate([[low], -wide]),
+        np.concatenate([[high], wide]),
+    )
+    assert alone.log_evidence == pytest.approx(both.log_evidence, rel=1e-12, abs=1e-12)
+    assert alone.mean[0] == pytest.approx(both.mean[0], rel=1e-12, abs=1e-12)
+    assert alone.sd[0] == pytest.approx(both.sd[0], rel=1e-12)
+    assert alone.at_bound[0] == both.at_bound[0]
+    assert alone.beyond[0] == pytest.approx(both.beyond[0], rel=1e-12, abs=1e-12)

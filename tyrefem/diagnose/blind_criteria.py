@@ -178,10 +178,8 @@ def structural_rates(rows: Sequence[Row]) -> dict[str, Rate]:
             able, lambda row: set(row["hidden"]) <= names(row), 0.7
         ),
         "identifiable: some hidden effect named": rate(able, lambda row: bool(set(row["hidden"]) & names(row))),
-        "identifiable if nothing else were wrong: in the reported set": rate(alone, in_set),
-        "identifiable if nothing else were wrong: named or partly identified": rate(
-            alone, lambda row: set(row["hidden"]) <= names(row)
-        ),
+        "identifiable alone: in the reported set": rate(alone, in_set),
+        "identifiable alone: named or partly identified": rate(alone, lambda row: set(row["hidden"]) <= names(row)),
         "all cases: confident wrong name": rate(rows, lambda row: bool(false_names(row)), 0.02, at_most=True),
         "nothing hidden: no effect named": rate(none, lambda row: not false_names(row), 0.97),
         "nothing hidden: nothing named, not even a film": rate(none, lambda row: not names(row)),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -52,6 +53,8 @@ def posterior(gram: Array, overlap: Array, sd: Array, low: Array, high: Array) -
     k = len(sd)
     if k == 0:
         return Posterior(np.zeros(0), np.zeros((0, 0)), 0.0, np.zeros(0, dtype=bool), np.zeros(0))
+    if k == 1:
+        return _of_one(float(gram[0, 0]), float(overlap[0]), float(sd[0]), float(low[0]), float(high[0]))
     scaled = gram * sd[:, None] * sd[None, :]
     matrix = np.eye(k) + scaled
     factor = cho_factor(matrix, lower=True)
@@ -76,6 +79,20 @@ def posterior(gram: Array, overlap: Array, sd: Array, low: Array, high: Array) -
     # The slope of the misfit at a bound, divided by its slope one standard deviation from the best point.
     beyond = np.where(held, np.abs(right - matrix @ z) * spread, 0.0)
     return Posterior(z * sd, covariance_z * sd[:, None] * sd[None, :], log_evidence, held, beyond)
+
+
+def _of_one(gram: float, overlap: float, sd: float, low: float, high: float) -> Posterior:
+    """`posterior` of one unknown; searches ask for hundreds of thousands."""
+    slope, right, low, high = 1 + gram * sd**2, sd * overlap, low / sd, high / sd
+    best, spread = right / slope, 1 / math.sqrt(slope)
+    log_evidence = right * best / 2 - math.log(slope) / 2
+    if math.isfinite(low) or math.isfinite(high):
+        log_evidence += _log_mass((low - best) / spread, (high - best) / spread) - _log_mass(low, high)
+    held = best < low - 1e-12 or best > high + 1e-12
+    z = min(max(best, low), high) if held else best
+    beyond = abs(right - slope * z) * spread if held else 0.0
+    covariance = np.array([[(spread * sd) ** 2]])
+    return Posterior(np.array([z * sd]), covariance, log_evidence, np.array([held]), np.array([beyond]))
 
 
 def _held(matrix: Array, right: Array, z: Array, held: NDArray[np.bool_]) -> Array:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from bisect import bisect_left
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -335,13 +336,19 @@ def _threshold(
     largest = max(abs(unknown.low), abs(unknown.high)) / unknown.sd
     largest = min(largest, 20.0)
     values = np.geomspace(0.02, largest, 40) if largest > 0.02 else np.array([largest])
-    competitor = ""
-    for value in values:
+
+    def last(value: float) -> str | None:
+        """The competitor that is not ruled out, or the closest of them; None if all are."""
         ahead = margins(linear, value * response, (candidate,), sets, prior)
         worst = int(np.argmin(ahead))
-        if ahead[worst] >= MARGIN:
-            return float(value), competitor
-        competitor = " + ".join(member.key for member in sets[worst]) or "no effect"
+        return None if ahead[worst] >= MARGIN else " + ".join(member.key for member in sets[worst]) or "no effect"
+
+    # A lead grows with the square of the amplitude, so bisection finds where it reaches the margin.
+    first, competitor = bisect_left(values, True, key=lambda value: last(value) is None), ""
+    if first > 0:
+        competitor = last(values[first - 1]) or ""
+    if first < len(values):
+        return float(values[first]), competitor
     return math.inf, competitor
 
 
