@@ -97,7 +97,7 @@ def test_beyond_says_how_far_the_data_want_a_parameter_off_its_bound(beyond: flo
     np.testing.assert_allclose(fit.beyond, [beyond, 0.0, 0.0], rtol=1e-9)
 
 
-@pytest.mark.parametrize("low, high", [(-np.inf, np.inf), (-0.5, np.inf), (0.0, 0.9), (1.7, 4.0), (-3.0, -1.0)])
+@pytest.mark.parametrize(("low", "high"), [(-np.inf, np.inf), (-0.5, np.inf), (0.0, 0.9), (1.7, 4.0), (-3.0, -1.0)])
 @pytest.mark.parametrize("overlap", [8.0, -8.0, 0.0])
 def test_one_unknown_is_as_beside_another_that_the_data_do_not_know(low: float, high: float, overlap: float) -> None:
     alone = posterior(np.array([[4.0]]), np.array([overlap]), np.array([0.7]), np.array([low]), np.array([high]))
