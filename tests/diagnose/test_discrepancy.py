@@ -123,6 +123,27 @@ def test_an_effect_without_which_held_out_runs_are_predicted_better_is_told_but_
         assert (told in revision.doubts) is not named
 
 
+def test_an_effect_in_one_run_is_told_but_not_named_where_more_is_wrong() -> None:
+    judgement, _, robust = diagnosed(measured(hot=25.0, off=0.25))
+    odd = HOT.in_runs(("fast",))
+    for member, named in ((HOT, True), (odd, False)):
+        models = []
+        for model in robust.models:
+            fit = max(model.fits.values(), key=lambda each: each.p_value)
+            fits = {
+                (member,): replace(fit, members=(member,), held_out=-40.0),
+                (): replace(fit, members=(), held_out=-50.0),
+            }
+            values = {member.amplitudes[0].key: (25.0, 1.0)}
+            models.append(replace(model, fits=fits, named={member.key: 1.0}, values=values))
+        again = replace(judgement, verdict=UNEXPLAINED)
+        revision = beside_discrepancies(again, replace(robust, models=tuple(models)), SETTINGS)
+        assert revision.members == ((HOT,) if named else ())
+        assert revision.verdict == (PARTLY if named else UNEXPLAINED)
+        told = f"{odd.key} is not named: no other run tells it from what else differs in fast"
+        assert (told in revision.reasons) is not named
+
+
 @pytest.mark.parametrize("hot", [0.0, 25.0])
 def test_where_nothing_explains_the_data_only_effects_that_may_be_named_cost_fits(hot: float) -> None:
     data = measured(hot=hot, off=0.25)

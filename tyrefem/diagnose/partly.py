@@ -47,7 +47,7 @@ def beside_discrepancies(
     - *partly identified*: more is wrong than effects, and some act with at least 90 % probability beside every
       discrepancy model, with amounts that agree; beside the most probable model noise explains the misfit, and no set
       without them predicts the held-out runs better by more than ``held_out_margin``. Heat of unknown origin does not
-      explain the data by itself.
+      explain the data by itself. They act in all runs: the strain energy, too, may differ from run to run.
     - *unexplained*: more is wrong, and there is no such effect.
 
     ``law_replaced``: the study's strain law was wrong, and another one stands in its place; nothing is "identified".
@@ -78,6 +78,17 @@ def beside_discrepancies(
             law = min(robustness.counted, key=lambda law: law.named.get(member.key, 0.0))
             reason = f"{member.key} is not named: with {law.words} it is less probable, or of the other sign"
             revision = revision._replace(reasons=(*revision.reasons, reason))
+    if single := tuple(member for member in members if member.runs):
+        keys, runs = (
+            " + ".join(member.key for member in single),
+            ", ".join(dict.fromkeys(run for each in single for run in each.runs)),
+        )
+        doubt = f"{keys} is not named: no other run tells it from what else differs in {runs}"
+        members = tuple(member for member in members if member not in single)
+        if members or revision.verdict == CONFOUNDED:
+            revision = revision._replace(reasons=(*revision.reasons, doubt))
+        else:
+            revision = revision.doubted(doubt)
     if not members or len(members) > settings.largest:
         return revision
     if not _predicts_held_out(leading, members, settings.held_out_margin):
