@@ -164,8 +164,8 @@ def responses(
     near = model.nearby(model.coarse)
     if tick and near is not None:
         tick(f"solving the strain cycle of every drive for {len(near.numbers)} changed numbers", 0, 0)
-    answers = evaluations.of("response", [(number, unknowns) for number in range(count)], step)
     fine = _full_runs(evaluations)
+    answers = evaluations.of("response", [(number, unknowns) for number in range(count)], step)
     return tuple(
         _response(evaluations, unknowns, (times, readings), history, slopes, Modes(V))
         for (times, readings, slopes, V), history in zip(answers, fine, strict=True)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-from collections import deque
 from dataclasses import dataclass
 from typing import Any
 
@@ -24,8 +23,6 @@ from tyrefem.quantity import Ramp
 from tyrefem.simulation.effect_states import EffectStates
 
 GAS, RIM = "contained-air", "rim"
-#: Sets of points whose places a tyre keeps by their identity.
-LATEST = 8
 #: Places of sets of points, by section: tyres of one section are asked for the same points.
 _PLACES: Cache[tuple[NDArray[np.float64], NDArray[np.float64]]] = Cache(size=128)
 
@@ -95,23 +92,12 @@ class Surroundings:
 
     def places(self, x: Array) -> tuple[Array, Array]:
         """|s| along the meridian and depth of points x (2, n), m; cached for the latest sets of points."""
-        # Solvers pass the same arrays in every call, so that the search by value is rarely needed.
-        for points, known in self._latest_places:
-            if points is x:
-                return known
 
         def compute() -> tuple[Array, Array]:
             s, depth = self.study.section.locate(np.asarray(x).T)
             return np.abs(s), depth
 
-        places = _PLACES.get((self.study.section, Content.of(x)), compute)
-        self._latest_places.append((x, places))
-        return places
-
-    @functools.cached_property
-    def _latest_places(self) -> deque[tuple[Array, tuple[Array, Array]]]:
-        """The latest arrays of points with their places."""
-        return deque(maxlen=LATEST)
+        return _PLACES.get((self.study.section, Content.of(x)), compute)
 
     def ambient(self, t: float) -> float:
         """Ambient temperature, degC."""
