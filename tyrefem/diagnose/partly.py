@@ -45,9 +45,9 @@ def beside_discrepancies(
     - *identified* stays if every member acts with at least 90 % probability, averaged over the discrepancy models by
       their probabilities. *confounded* stays unless the data exclude that effects alone are wrong (`NOT_EXCLUDED`).
     - *partly identified*: more is wrong than effects, and some act with at least 90 % probability beside every
-      discrepancy model, with amounts that agree; beside the most probable model noise explains the misfit, and no set
-      without them predicts the held-out runs better by more than ``held_out_margin``. Heat of unknown origin does not
-      explain the data by itself. They act in all runs: the strain energy, too, may differ from run to run.
+      discrepancy model, with amounts that agree; beside the most probable model noise explains the misfit, and they
+      predict the held-out runs no worse than no effect. Heat of unknown origin does not explain the data by itself.
+      They act in all runs, as the strain energy may differ from run to run, too.
     - *unexplained*: more is wrong, and there is no such effect.
 
     ``law_replaced``: the study's strain law was wrong, and another one stands in its place; nothing is "identified".
@@ -79,10 +79,8 @@ def beside_discrepancies(
             reason = f"{member.key} is not named: with {law.words} it is less probable, or of the other sign"
             revision = revision._replace(reasons=(*revision.reasons, reason))
     if single := tuple(member for member in members if member.runs):
-        keys, runs = (
-            " + ".join(member.key for member in single),
-            ", ".join(dict.fromkeys(run for each in single for run in each.runs)),
-        )
+        keys = " + ".join(member.key for member in single)
+        runs = ", ".join(dict.fromkeys(run for each in single for run in each.runs))
         doubt = f"{keys} is not named: no other run tells it from what else differs in {runs}"
         members = tuple(member for member in members if member not in single)
         if members or revision.verdict == CONFOUNDED:
@@ -91,7 +89,7 @@ def beside_discrepancies(
             revision = revision.doubted(doubt)
     if not members or len(members) > settings.largest:
         return revision
-    if not _predicts_held_out(leading, members, settings.held_out_margin):
+    if not _predicts_held_out(leading, members):
         keys = " + ".join(member.key for member in members)
         return revision.doubted(f"{keys} is not named: the held-out runs are predicted better without it")
     if heat is not None and heat.explains(settings.free_heat_lead):
@@ -116,17 +114,14 @@ def _doubt(robustness: Robustness, member: Candidate) -> str:
     )
 
 
-def _predicts_held_out(model: UnderDiscrepancy, members: Members, margin: float) -> bool:
-    """Whether no set without these effects predicts the held-out runs better than with them, by more than the margin.
-
-    A right set falls behind a given other one by m nats with probability at most exp(-m).
-    """
+def _predicts_held_out(model: UnderDiscrepancy, members: Members) -> bool:
+    """Whether the best fitted set with these effects predicts the held-out runs no worse than any set without one."""
     if all(math.isnan(fit.held_out) for fit in model.fits.values()):
         return True
     wanted = set(members)
     with_them = max((fit.held_out for part, fit in model.fits.items() if wanted <= set(part)), default=-math.inf)
     without = max((fit.held_out for part, fit in model.fits.items() if not wanted <= set(part)), default=-math.inf)
-    return with_them >= without - margin
+    return with_them >= without
 
 
 def _percent(share: float) -> str:
