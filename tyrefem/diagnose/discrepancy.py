@@ -21,6 +21,8 @@ from tyrefem.diagnose.unknowns import Unknown
 from tyrefem.inputs.name_patterns import SCALES
 
 Array = NDArray[np.float64]
+#: What has whitened sensitivities by run.
+Known = Residuals | Sensitivities
 NONE, ENERGY, HEAT, READINGS = "none", "strain energy", "missing heat", "correlated readings"
 #: Name of a discrepancy by another strain law: this and the law's name.
 LAW = "strain law "
@@ -121,7 +123,7 @@ def discrepancies(residuals: Residuals) -> Iterator[Discrepancy]:
         yield Discrepancy(READINGS, size, _shared(residuals, _courses(residuals, size)))
 
 
-def films_and_gauges(residuals: Residuals | Sensitivities) -> tuple[Unknown, ...]:
+def films_and_gauges(residuals: Known) -> tuple[Unknown, ...]:
     """Speed laws of films and gauges among the unknowns of the residuals, in all runs."""
     further = residuals.unknowns[residuals.nuisance :]
     return tuple(
@@ -164,8 +166,6 @@ def other_structure(known: Sensitivities, without: Collection[str] = ()) -> Shar
 
 #: Columns of the readings by run.
 Columns = dict[int, Array]
-#: What has whitened sensitivities by run.
-Known = Residuals | Sensitivities
 
 
 def _shared(residuals: Known, parts: Sequence[Columns]) -> SharedError:

@@ -43,7 +43,7 @@ _received: tuple[tuple[str, str, str], tuple[str, ...]] | None = None
 
 def received() -> tuple[str, ...] | None:
     """Files that came with a study from another machine, in place of the user's folders; None without any."""
-    return None if _received is None or _received[0] != state() else _received[1]
+    return _received[1] if _received is not None and _received[0] == state() else None
 
 
 def receive_files(files: tuple[str, ...]) -> None:
