@@ -89,13 +89,12 @@ def _check_crossing(section: Layered, s: Array) -> None:
 
 def _crosses_itself(polygon: Array) -> bool:
     """True if two edges of a closed polygon that are not neighbours cross."""
-    a, b = polygon, np.roll(polygon, -1, axis=0)
-
-    def turn(p: Array, q: Array, x: Array) -> Array:
-        """Sign of the side of p -> q (n, 1, 2) for points x (1, n, 2)."""
-        along, to = (q - p)[:, None], x[None] - p[:, None]
-        return np.sign(along[..., 0] * to[..., 1] - along[..., 1] * to[..., 0])
-
-    ends_a, ends_b = turn(a, b, a), turn(a, b, b)
-    split = ends_a * ends_b < 0
+    n = len(polygon)
+    along = np.roll(polygon, -1, axis=0) - polygon
+    across = np.column_stack([-along[:, 1], along[:, 0]])
+    # On which side of edge i corner j lies; the corners of the edge itself and of its neighbours count as on it.
+    side = across @ polygon.T - np.sum(across * polygon, axis=1)[:, None]
+    each = np.arange(n)
+    side[each, each] = side[each, (each + 1) % n] = 0.0
+    split = side * np.roll(side, -1, axis=1) < 0
     return bool((split & split.T).any())

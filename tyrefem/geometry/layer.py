@@ -69,6 +69,10 @@ class Profile(PickledFields):
             raise InputError("pchip interpolation needs two stations or more")
 
     @cached_property
+    def _table(self) -> tuple[Array, Array]:
+        return np.asarray(self.s, dtype=float), np.asarray(self.values, dtype=float)
+
+    @cached_property
     def _pchip(self) -> tuple[Any, Any]:
         from scipy.interpolate import PchipInterpolator
 
@@ -80,7 +84,7 @@ class Profile(PickledFields):
         x = np.abs(np.asarray(s, dtype=float))
         if self.interpolation == "pchip":
             return np.asarray(self._pchip[0](np.clip(x, self.s[0], self.s[-1])))
-        return np.asarray(np.interp(x, self.s, self.values))
+        return np.asarray(np.interp(x, *self._table))
 
     def slope(self, s: ArrayLike) -> Array:
         """d value/ds at ``s`` (any shape); at a kink, the slope on the side of larger ``|s|``."""

@@ -69,22 +69,20 @@ class Layup:
     def faces(self, s: ArrayLike) -> Array:
         """Distance from the meridian to the inner face and to each layer's outer face: (n_layers + 1, ...) [m]."""
         s = np.asarray(s, dtype=float)
-        return self._stacked(*[np.stack([layer.thickness(s) for layer in layers]) for layers in self._worn_and_built])
+        return self._stacked(*[[layer.thickness(s) for layer in layers] for layers in self._worn_and_built])
 
     def slopes(self, s: ArrayLike) -> Array:
         """d/ds of `faces`, same shape."""
         s = np.asarray(s, dtype=float)
-        return self._stacked(
-            *[np.stack([layer.thickness.slope(s) for layer in layers]) for layers in self._worn_and_built]
-        )
+        return self._stacked(*[[layer.thickness.slope(s) for layer in layers] for layers in self._worn_and_built])
 
     @property
     def _worn_and_built(self) -> list[tuple[Layer, ...]]:
         return [self.layers] if self.as_built is None else [self.layers, self.as_built]
 
-    def _stacked(self, rises: Array, built: Array | None = None) -> Array:
-        heights, first = _heights(rises), _heights(rises if built is None else built)
-        return np.asarray(heights - self._meridian(first))
+    def _stacked(self, rises: list[Array], built: list[Array] | None = None) -> Array:
+        heights = _heights(rises)
+        return np.asarray(heights - self._meridian(heights if built is None else _heights(built)))
 
     def _meridian(self, heights: Array) -> Array:
         """Height of the meridian above the inner face."""
@@ -98,9 +96,12 @@ class Layup:
         return np.asarray((heights[index] + heights[index + 1]) / 2)
 
 
-def _heights(rises: Array) -> Array:
+def _heights(rises: list[Array]) -> Array:
     """Heights of the faces above the inner face, from the thicknesses of the layers."""
-    return np.concatenate([np.zeros((1, *rises.shape[1:])), np.cumsum(rises, axis=0)])
+    heights = np.zeros((len(rises) + 1, *rises[0].shape))
+    for layer, rise in enumerate(rises):
+        heights[layer + 1] = heights[layer] + rise
+    return heights
 
 
 @dataclass(frozen=True, eq=False)

@@ -119,6 +119,7 @@ class TwoArcs(PickledFields):
         widest = self.shoulder_s + self.sidewall_radius * (np.pi / 2 - self.shoulder_angle)
         return 2 * float(self.position(min(self.length, widest))[1])
 
+    @cached_property
     def _centres(self) -> tuple[Array, Array]:
         outwards = np.array([np.cos(self.shoulder_angle), np.sin(self.shoulder_angle)])
         crown = np.array([self.crown_midline_radius - self.crown_radius, 0.0])
@@ -132,20 +133,21 @@ class TwoArcs(PickledFields):
     def position(self, s: ArrayLike) -> Array:
         """(r, z) at ``s``, shape (..., 2) [m]; negative ``s`` is the other side; beyond the bead the arc continues."""
         s = np.asarray(s, dtype=float)
-        crown, sidewall = self._centres()
-        on_crown = np.abs(s)[..., None] <= self.shoulder_s
-        centre = np.where(on_crown, crown, sidewall)
+        crown, sidewall = self._centres
+        on_crown, angle = np.abs(s) <= self.shoulder_s, self._angle(s)
         radius = np.where(on_crown, self.crown_radius, self.sidewall_radius)
-        angle = self._angle(s)
-        point = centre + radius * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+        point = np.empty((*s.shape, 2))
+        point[..., 0] = np.where(on_crown, crown[0], sidewall[0]) + radius * np.cos(angle)
+        point[..., 1] = np.where(on_crown, crown[1], sidewall[1]) + radius * np.sin(angle)
         point[..., 1] *= np.where(s < 0, -1.0, 1.0)
-        return np.asarray(point)
+        return point
 
     def normal(self, s: ArrayLike) -> Array:
         """Unit normal (n_r, n_z) outwards at ``s``, shape (..., 2)."""
         s = np.asarray(s, dtype=float)
-        angle = self._angle(s)
-        return np.stack([np.cos(angle), np.sin(angle) * np.where(s < 0, -1.0, 1.0)], axis=-1)
+        angle, normal = self._angle(s), np.empty((*s.shape, 2))
+        normal[..., 0], normal[..., 1] = np.cos(angle), np.sin(angle) * np.where(s < 0, -1.0, 1.0)
+        return normal
 
     def curvature(self, s: ArrayLike) -> Array:
         """1/radius at ``s`` [1/m], positive where the centre lies inside the tyre."""
@@ -160,7 +162,7 @@ class TwoArcs(PickledFields):
         points = np.asarray(points, dtype=float)
         side = np.where(points[..., 1] < 0, -1.0, 1.0)
         mirrored = np.stack([points[..., 0], np.abs(points[..., 1])], axis=-1)
-        crown, sidewall = self._centres()
+        crown, sidewall = self._centres
         to_crown, to_sidewall = mirrored - crown, mirrored - sidewall
         angle_c = np.arctan2(to_crown[..., 1], to_crown[..., 0])
         middle = self.shoulder_angle + self.sidewall_angle / 2
@@ -170,9 +172,12 @@ class TwoArcs(PickledFields):
         s_s = self.shoulder_s + self.sidewall_radius * (angle_s - self.shoulder_angle)
         foot_c = self.position(np.clip(s_c, 0, self.shoulder_s))
         foot_s = self.position(np.clip(s_s, self.shoulder_s * (1 + 1e-15), self.length))
-        gap_c = np.linalg.norm(mirrored - foot_c, axis=-1)
-        gap_s = np.linalg.norm(mirrored - foot_s, axis=-1)
+        gap_c, gap_s = _length(mirrored - foot_c), _length(mirrored - foot_s)
         on_crown = (gap_c <= gap_s) & (s_c <= self.shoulder_s * (1 + 1e-12))
-        y_c = np.linalg.norm(to_crown, axis=-1) - self.crown_radius
-        y_s = np.linalg.norm(to_sidewall, axis=-1) - self.sidewall_radius
+        y_c, y_s = _length(to_crown) - self.crown_radius, _length(to_sidewall) - self.sidewall_radius
         return side * np.where(on_crown, s_c, s_s), np.where(on_crown, y_c, y_s)
+
+
+def _length(v: Array) -> Array:
+    """Lengths of vectors (..., 2)."""
+    return np.asarray(np.sqrt(v[..., 0] ** 2 + v[..., 1] ** 2))

@@ -39,6 +39,5 @@ def wall_of(section: Section, size: float) -> Wall:
     lowest = 0.0 if section.half else -section.line.length
     s = np.linspace(lowest, section.line.length, STATIONS)[1:-1]
     thickness = section.rubber_thickness(s)
-    surfaces = [section.place(s, depth) for depth in (np.zeros_like(s), thickness)]
-    inner, outer = (inside_mesh(section, size, *section.locate(surface)) for surface in surfaces)
+    inner, outer = (inside_mesh(section, size, s, depth) for depth in (np.zeros_like(s), thickness))
     return Wall(s, thickness, inner, outer)

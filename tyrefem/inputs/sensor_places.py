@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from tyrefem.errors import InputError
 from tyrefem.inputs.study_card import Sensor
 
@@ -22,6 +24,9 @@ def sensor_places(
     ------
     InputError : a sensor is outside the rubber.
     """
+    places = _together(sensors, section)
+    if places is not None:
+        return places
     places = {}
     for name, sensor in sensors.items():
         try:
@@ -29,6 +34,24 @@ def sensor_places(
         except InputError as error:
             raise error.within(field=f"sensors.{name}", file=file) from None
     return places
+
+
+def _together(sensors: Mapping[str, Sensor], section: Section) -> dict[str, tuple[float, float]] | None:
+    """The places of sensors that are all given by a station and are all in the rubber; None: not so."""
+    stations = [sensor.s for sensor in sensors.values()]
+    if not stations or any(s is None for s in stations):
+        return None
+    s, length = np.array(stations, dtype=float), section.line.length
+    thickness = section.rubber_thickness(s)
+    pairs = [(sensor.depth, sensor.below_surface) for sensor in sensors.values()]
+    given = np.array([depth if below is None else below for depth, below in pairs], dtype=float)
+    lowest = 0.0 if section.half else -length
+    if (s < lowest).any() or (s > length).any() or (given > thickness * (1 + 1e-9)).any():
+        return None
+    inside = np.minimum(given, thickness)
+    below = np.array([each is not None for _, each in pairs])
+    points = section.place(s, np.where(below, thickness - inside, inside))
+    return {name: (float(r), float(z)) for name, (r, z) in zip(sensors, points, strict=True)}
 
 
 def sensor_place(sensor: Sensor, section: Section) -> tuple[float, float]:

@@ -37,8 +37,12 @@ class StudyMaterials(Brief):
         folder: Path | None,
         file: Path | None,
         like: StudyMaterials | None,
+        *,
+        same_section: bool = True,
     ) -> StudyMaterials:
-        """Read the cards of all regions of a section. Unchanged cards of ``like``, of the same section, are reused.
+        """Read the cards of all regions of a section. Unchanged cards of ``like`` are reused.
+
+        ``same_section``: of ``like`` too; else cords are checked again.
 
         Raises
         ------
@@ -54,11 +58,14 @@ class StudyMaterials(Brief):
         for region in regions:
             if region not in references:
                 raise InputError(f"no material card for region '{region}'", field="materials", file=file)
-            if like is not None and region in like.cards and references[region] == like.references[region]:
+            known = like is not None and region in like.cards and (same_section or like.folder == folder)
+            if known and like is not None and references[region] == like.references[region]:
                 cards[region], written[region] = like.cards[region], like.written[region]
-                continue
+                if same_section:
+                    continue
             try:
-                cards[region], written[region] = _card(region, references[region], folder, like)
+                if region not in cards:
+                    cards[region], written[region] = _card(region, references[region], folder, like)
                 check_cords_fit(cards[region], section, region)
             except InputError as error:
                 raise error if error.file else error.within(field=f"materials.{region}", file=file) from None

@@ -59,6 +59,7 @@ class StudyParts(Brief):
             card = StudyCard.check(data, file) if like is None else like.card.checked(like.data, data, file)
         except InputError as error:
             raise error_as_written(error, data) from None
+        cards = None if like is None else like.materials
         if like is not None and data["section"] != like.data["section"]:
             # In another section, cords may not fit and sensors may be outside.
             like = None
@@ -72,7 +73,8 @@ class StudyParts(Brief):
             new_section,
             folder,
             file,
-            None if like is None else like.materials,
+            cards,
+            same_section=like is not None,
         )
         _check_energy(card, new_section, file)
         if like is not None and new_section is like.new_section and card.sensors == like.card.sensors:

@@ -80,5 +80,5 @@ def masses(section: Section, materials: Mapping[str, MaterialCard], temperature:
 @functools.lru_cache(maxsize=32)
 def _whole_volumes(section: Section) -> tuple[tuple[str, float], ...]:
     """(region, volume) of the whole tyre, m3. The values of the 32 latest sections are kept for all studies."""
-    whole = section.as_full()
-    return tuple((region, whole.volume(region)) for region in whole.regions)
+    sides = 2.0 if section.half else 1.0
+    return tuple((region, sides * section.volume(region)) for region in section.regions)

@@ -12,6 +12,7 @@ from tyrefem.reduced.batch import Batch
 from tyrefem.reduced.integration import integrate
 from tyrefem.reduced.model import NotReducibleError, ReducedModel
 from tyrefem.reduced.readout import Readout
+from tyrefem.reduced.shaped_model import fill
 from tyrefem.reduced.solution import BatchSolution
 from tyrefem.reduced.variant import Variant
 from tyrefem.simulation.rolling_tyre import RollingTyre
@@ -85,4 +86,5 @@ def batch_solutions(
     for members in groups.values():
         for first in range(0, len(members), most):
             part = members[first : first + most]
+            fill([balance.model for _, balance in part])
             yield [number for number, _ in part], integrate(Batch(model, [balance for _, balance in part], tolerance))

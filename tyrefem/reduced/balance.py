@@ -11,8 +11,10 @@ from numpy.typing import NDArray
 
 from tyrefem.conduction import Film, Material, Reservoir
 from tyrefem.conduction.conditions import is_number
-from tyrefem.reduced.exchanges import Layout
+from tyrefem.geometry.meshing.topology import OtherTopologyError
+from tyrefem.reduced.exchanges import Exchanges, Layout
 from tyrefem.reduced.model import NotReducibleError, ReducedModel
+from tyrefem.reduced.shaped_model import on_tyre
 from tyrefem.simulation.rolling_tyre import RollingTyre
 
 Array = NDArray[np.float64]
@@ -38,7 +40,6 @@ class ReducedBalance:
             tuple((name, _reservoir(other)) for name, (_, other) in conductances),
             tuple(names),
         )
-        self.exchanges = model.exchanges(self.layout)
         #: (coefficient, sink) of every exchange: numbers or functions f(x, t).
         self.data = [(film.h, film.sink) for _, _, film in films]
         self.data += [(_timed(conductance), _timed(other)) for _, (conductance, other) in conductances]
@@ -49,6 +50,11 @@ class ReducedBalance:
         for i, name in enumerate(names):
             initial_of = reservoirs[name].initial
             self.start[m + i] = initial if initial_of is None else initial_of
+
+    @functools.cached_property
+    def exchanges(self) -> Exchanges:
+        """Matrices of all heat exchanges."""
+        return self.model.exchanges(self.layout)
 
     @functools.cached_property
     def capacities(self) -> Array:
@@ -108,9 +114,17 @@ def reduced_balance(model: ReducedModel, tyre: RollingTyre) -> ReducedBalance:
     if tyre.acting.with_states:
         names = ", ".join(f"'{effect.name}'" for effect in tyre.acting.with_states)
         raise NotReducibleError(f"a reduced model cannot follow effects with states: {names}")
-    if tyre.mesh is not model.base.mesh:
-        raise NotReducibleError("the mesh is another: geometry, strain zones or [mesh] differ")
+    try:
+        model = on_tyre(model, tyre)
+    except OtherTopologyError as error:
+        raise NotReducibleError(f"the mesh has another topology: {error.message}") from None
     bodies = {region: _constant(region, body) for region, body in tyre.bodies.items()}
+    if model.on_reference.shapes is not None:
+        for region, (along, across, _) in bodies.items():
+            if along != across and region not in model.on_reference.shapes.directed:
+                raise NotReducibleError(
+                    f"'{region}' conducts along plies here, and in all directions in the base study"
+                )
     films: list[tuple[str, int, Film]] = []
     for side, conditions in tyre.boundaries.items():
         for number, condition in enumerate(conditions):
@@ -140,9 +154,15 @@ def matrices_of(balances: Sequence[ReducedBalance]) -> tuple[Array, Array]:
     n = m + len(first.reservoirs)
     M, K = np.zeros((len(balances), n, n)), np.zeros((len(balances), n, n))
     of_bodies = np.array([[balance.bodies[region] for region in regions] for balance in balances])
-    masses, pairs = model.stacked
-    M[:, :m, :m] = np.tensordot(of_bodies[:, :, 2], masses, axes=1)
-    K[:, :m, :m] = np.tensordot(of_bodies[:, :, :2], pairs, axes=2)
+    if all(balance.model is model for balance in balances):
+        masses, pairs = model.stacked
+        M[:, :m, :m] = np.tensordot(of_bodies[:, :, 2], masses, axes=1)
+        K[:, :m, :m] = np.tensordot(of_bodies[:, :, :2], pairs, axes=2)
+    else:
+        for b, balance in enumerate(balances):
+            masses, pairs = balance.model.stacked
+            M[b, :m, :m] = np.tensordot(of_bodies[b, :, 2], masses, axes=1)
+            K[b, :m, :m] = np.tensordot(of_bodies[b, :, :2], pairs, axes=2)
     for i in range(len(first.reservoirs)):
         M[:, m + i, m + i] = [balance.capacities[i] for balance in balances]
     return M, K

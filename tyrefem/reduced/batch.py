@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from tyrefem.reduced.balance import ReducedBalance, matrices_of
 from tyrefem.reduced.boundary_data import BoundaryData
-from tyrefem.reduced.budget import HeatFlows
+from tyrefem.reduced.budget import HeatFlows, by_shape
 from tyrefem.reduced.model import ReducedModel
 from tyrefem.reduced.sampled_source import SampledHeat
 
@@ -39,7 +39,27 @@ class Batch:
     @functools.cached_property
     def heat_flows(self) -> HeatFlows:
         """Heat flows of the batch; all variants have the same zones, films and reservoirs."""
-        return HeatFlows(self.balances[0])
+        return HeatFlows(self.balances)
+
+    @functools.cached_property
+    def models(self) -> list[ReducedModel]:
+        """The model of every variant: the same modes, on its shape of the section."""
+        return [balance.model for balance in self.balances]
+
+    @functools.cached_property
+    def films(self) -> Array:
+        """Exchange matrices for a coefficient of 1, (1 or B, n_exchanges, n, n): 1 if all shapes are the same."""
+        return by_shape(self.balances, lambda balance: balance.stack)
+
+    @functools.cached_property
+    def loads(self) -> Array:
+        """Load vectors of the given sinks, (1 or B, n_exchanges, n)."""
+        return by_shape(self.balances, lambda balance: balance.loads)
+
+    @functools.cached_property
+    def source_load(self) -> Array:
+        """Heat into the modes per heat source at the sample nodes, (1 or B, m, n_samples)."""
+        return by_shape(self.balances, lambda balance: balance.model.load)
 
     @functools.cached_property
     def heat(self) -> SampledHeat:
@@ -56,7 +76,9 @@ class Batch:
         pairs = [balance.coefficients(t) for balance in self.balances]
         films, sinks = (np.array(each) for each in zip(*pairs, strict=True))
         powers = np.array([balance.powers(t) for balance in self.balances]).reshape(len(films), -1)
-        constant = (films * sinks) @ self.balances[0].loads
+        constant = np.einsum(
+            "bj,bjn->bn", films * sinks, np.broadcast_to(self.loads, (len(films), *self.loads.shape[1:]))
+        )
         constant[:, self.model.size :] += powers
         return BoundaryData(t, films, sinks, powers, constant)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,28 +18,31 @@ Array = NDArray[np.float64]
 class HeatFlows:
     """Heat flows of a batch: by zone, by film, by exchange, and powers of reservoirs."""
 
-    def __init__(self, balance: ReducedBalance) -> None:
-        self.b, self.at = balance, balance.exchanges
+    def __init__(self, balances: Sequence[ReducedBalance]) -> None:
+        self.b, self.given = balances[0], balances[0].exchanges.given
+        #: (1 or B, ...) by shape: W of zones per source at the samples; W per kelvin; m2.
+        self.power = by_shape(balances, lambda balance: balance.model.power)
+        self.rows = by_shape(balances, lambda balance: balance.exchanges.rows)
+        self.areas = by_shape(balances, lambda balance: balance.exchanges.areas)
 
     @property
     def width(self) -> int:
         """Number of entries."""
-        return len(self.b.model.zones) + len(self.at.areas) + len(self.b.reservoirs)
+        return len(self.b.model.zones) + len(self.given) + len(self.b.reservoirs)
 
     def powers(self, data: BoundaryData, q: Array, y: Array) -> Array:
         """(B, width) W of sources q (B, n_samples) and states y (B, n)."""
-        at = self.at
-        exchanged = data.films * (y @ at.rows.T + np.where(at.given, data.sinks * at.areas, 0.0))
-        return np.concatenate([q @ self.b.model.power.T, exchanged, data.powers], axis=1)
+        exchanged = (self.rows @ y[:, :, None])[:, :, 0] + np.where(self.given, data.sinks * self.areas, 0.0)
+        return np.concatenate([(self.power @ q[:, :, None])[:, :, 0], data.films * exchanged, data.powers], axis=1)
 
     def rest(self, q: Array, films: Array, sinks: Array, powers: Array, frozen: Array, y: Array) -> Array:
         """(B, width, k) W of all heat flows except those of frozen films (B, n_exchanges) with states y (B, n, k)."""
-        at, count = self.at, y.shape[2]
-        exchanged = films * np.where(at.given[:, None], sinks * at.areas[:, None], 0.0)
+        count = y.shape[2]
+        exchanged = films * np.where(self.given[:, None], sinks * self.areas[:, :, None], 0.0)
         if films.shape[2] > 1:
-            exchanged = exchanged + (films - frozen[:, :, None]) * (at.rows @ y)
+            exchanged = exchanged + (films - frozen[:, :, None]) * (self.rows @ y)
         parts = [
-            self.b.model.power @ q,
+            self.power @ q,
             *(np.broadcast_to(terms, (*terms.shape[:2], count)) for terms in (exchanged, powers)),
         ]
         return np.concatenate(parts, axis=1)
@@ -48,7 +51,7 @@ class HeatFlows:
         """(B, width, k) W, or J, of frozen films (B, n_exchanges) with states, or their integrals, y (B, n, k)."""
         flows = np.zeros((len(y), self.width, y.shape[2]))
         first = len(self.b.model.zones)
-        flows[:, first : first + films.shape[1]] = films[:, :, None] * (self.at.rows @ y)
+        flows[:, first : first + films.shape[1]] = films[:, :, None] * (self.rows @ y)
         return flows
 
     def entries(self) -> list[tuple[str, str, int]]:
@@ -58,6 +61,14 @@ class HeatFlows:
         entries += [("boundary", side, number) for side, number, _ in self.b.films]
         entries += [("reservoir", name, i) for name in names for i, _ in enumerate(self.b.reservoirs[name].exchanges)]
         return entries + [("reservoir", name, -1) for name in names]
+
+
+def by_shape(balances: Sequence[ReducedBalance], of: Callable[[ReducedBalance], Array]) -> Array:
+    """(1, ...) if all variants have the same shape, and so the same projected operators, else (B, ...)."""
+    first = balances[0]
+    if all(balance.model is first.model for balance in balances):
+        return of(first)[None]
+    return np.stack([of(balance) for balance in balances])
 
 
 def budget(
@@ -77,11 +88,11 @@ def end_budgets(
 ) -> Budget:
     """The heat budget of B variants at the end of their drive; the variants take the place of the times."""
     first, m = balances[0], balances[0].model.size
-    rows = np.array([first.model.stored_row[region] for region in first.bodies])
+    rows = by_shape(balances, lambda balance: np.array([balance.model.stored_row[region] for region in first.bodies]))
     capacity = np.array([[body[2] for body in balance.bodies.values()] for balance in balances])
     in_reservoirs = np.array([each.capacities for each in balances])
     start = np.array([balance.start for balance in balances])
-    stored, storing = (capacity * (each[:, :m] @ rows.T) for each in (states - start, slopes))
+    stored, storing = (capacity * (rows @ each[:, :m, None])[:, :, 0] for each in (states - start, slopes))
     in_reservoirs = in_reservoirs * (states - start)[:, m:]
     return _tally(first, np.zeros(len(balances)), energies, powers, stored, storing, in_reservoirs)
 
@@ -101,7 +112,7 @@ def _tally(
     for name in names:
         for i, (_, other) in enumerate(balance.reservoirs[name].exchanges):
             between[name, i] = (name, other if isinstance(other, str) else None)
-    tally = Tally(HeatFlows(balance).entries(), list(balance.bodies), names, into, between)
+    tally = Tally(HeatFlows([balance]).entries(), list(balance.bodies), names, into, between)
     for i in range(len(times)):
         tally.record(energies[i], powers[i], stored[i], storing[i], in_reservoirs[i])
     return tally.budget(times)

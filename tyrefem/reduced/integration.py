@@ -62,7 +62,11 @@ class _PhaseIntegration:
         self.previous: tuple[float, Array] | None = None
         self.M, K = self.batch.matrices
         self.frozen = moment
-        A = K + np.tensordot(moment.films, self.batch.balances[0].stack, axes=1)
+        balances = self.batch.balances
+        if all(balance.model is balances[0].model for balance in balances):
+            A = K + np.tensordot(moment.films, balances[0].stack, axes=1)
+        else:
+            A = K + [np.tensordot(h, each.stack, axes=1) for h, each in zip(moment.films, balances, strict=True)]
         self.decay, self.into = np.empty(A.shape[:2]), np.empty_like(A)
         # Variants that differ in their heat sources only share the eigenvectors.
         solved: dict[tuple[bytes, bytes], int] = {}
@@ -172,15 +176,14 @@ class _PhaseIntegration:
         m = self.batch.model.size
         q = self.batch.heat(data_times, y[:, :m])
         heat = np.repeat(constant, y.shape[2], axis=2) if constant.shape[2] == 1 else constant.copy()
-        heat[:, :m] += self.batch.model.load @ q
+        heat[:, :m] += self.batch.source_load @ q
         if film_change is not None:
             heat -= self._film_change_heat(film_change, y)
         return heat, q
 
     def _film_change_heat(self, film_change: Array, y: Array) -> Array:
         """Heat that leaves through the change (B, n_exchanges, k) of the films since they were frozen."""
-        stack = self.batch.balances[0].stack
-        exchanged = np.einsum("jmn,bnk->bjmk", stack, y, optimize=True)
+        exchanged = self.batch.films @ y[:, None]
         return np.asarray((film_change[:, :, None, :] * exchanged).sum(axis=1))
 
     def _largest(self, y: Array) -> float:

@@ -18,6 +18,7 @@ from tyrefem.errors import InputError
 from tyrefem.geometry.wall import wall_of
 from tyrefem.reduced.exchanges import Exchanges, Layout, exchanges
 from tyrefem.reduced.pod import CANDIDATE_NODES
+from tyrefem.reduced.shape_operators import ShapeGeometry, ShapeOperators
 from tyrefem.simulation.rolling_tyre import RollingTyre
 
 Array = NDArray[np.float64]
@@ -46,6 +47,8 @@ class ReducedModel(Brief):
     nodes_from_samples: Array
     #: Region -> its nodes that were nearly the hottest in training: the peak is searched there first.
     hot: Mapping[str, NDArray[np.intp]] = field(default_factory=dict)
+    #: Projected operators over the shapes of the section; None: assembled and projected for every shape.
+    shapes: ShapeOperators | None = None
 
     def _title(self) -> str:
         return f"of {self.base.study.name}"
@@ -66,6 +69,26 @@ class ReducedModel(Brief):
     def size(self) -> int:
         """Number of modes."""
         return int(self.V.shape[1])
+
+    @functools.cached_property
+    def shape(self) -> ShapeGeometry:
+        """Quadrature points and edges for any places of the nodes."""
+        return ShapeGeometry(self.base)
+
+    @property
+    def on_reference(self) -> ReducedModel:
+        """The model on the reference shape."""
+        return self
+
+    @functools.cached_property
+    def of_sections(self) -> Cache[ReducedModel]:
+        """Mesh of a shape -> the model on it."""
+        return Cache(size=64)
+
+    @property
+    def points(self) -> Array:
+        """Places of the unknowns, (2, n) m."""
+        return self.operators.points
 
     def exchanges(self, layout: Layout) -> Exchanges:
         """The exchange matrices of a layout, built once."""
@@ -142,7 +165,7 @@ class ReducedModel(Brief):
     def wall(self) -> tuple[Array, Array, Array, Array]:
         """Stations s (k,) m, wall thickness (k,) m, and rows of V (k, m) at the inner and the outer surface."""
         wall = wall_of(self.base.study.section, self.base.mesh.size)
-        inner, outer = (self.rows(points) for points in (wall.inner, wall.outer))
+        inner, outer = np.split(self.rows(np.concatenate([wall.inner, wall.outer])), 2)
         return wall.s, wall.thickness, inner, outer
 
     def rows(self, points: Array) -> Array:
@@ -202,7 +225,8 @@ class ReducedModel(Brief):
         return np.vstack([self.V[ops.dofs(zone)[chosen]] for zone, chosen in self.samples.items()])
 
     @functools.cached_property
-    def _zone_rows(self) -> dict[str, slice]:
+    def zone_rows(self) -> dict[str, slice]:
+        """Zone -> its rows of ``nodes_from_samples``."""
         ends = np.cumsum([0, *(len(self.operators.dofs(zone)) for zone in self.zones)])
         return {zone: slice(int(a), int(b)) for zone, a, b in zip(self.zones, ends[:-1], ends[1:], strict=True)}
 
@@ -210,7 +234,7 @@ class ReducedModel(Brief):
     def load(self) -> Array:
         """(m, n_samples): heat into the modes per heat source at the sample nodes."""
         loads = np.zeros((self.size, self.nodes_from_samples.shape[1]))
-        for zone, rows in self._zone_rows.items():
+        for zone, rows in self.zone_rows.items():
             loads += (self.operators.source(zone).T @ self.V).T @ self.nodes_from_samples[rows]
         return loads
 
@@ -218,7 +242,7 @@ class ReducedModel(Brief):
     def power(self) -> Array:
         """(n_zones, n_samples): power of every zone per heat source at the sample nodes."""
         rows = []
-        for zone, part in self._zone_rows.items():
+        for zone, part in self.zone_rows.items():
             row = np.asarray(self.operators.source(zone).sum(axis=0)).ravel()
             rows.append(row @ self.nodes_from_samples[part])
         return np.array(rows)

@@ -65,6 +65,15 @@ def sample_nodes(fields: Array, tolerance: float, most: int, spare: float = 1.5)
     -------
     numbers (p,) of the sample nodes, and P (n, p).
     """
+    U, numbers, fit = interpolation(fields, tolerance, most, spare)
+    return numbers, U @ fit
+
+
+def interpolation(fields: Array, tolerance: float, most: int, spare: float = 1.5) -> tuple[Array, Array, Array]:
+    """POD modes U (n, K) of fields, numbers (p,) of sample nodes, and the fit (K, p): f ~ U fit f[numbers].
+
+    Parameters as in `sample_nodes`.
+    """
     from scipy.linalg import qr
 
     values, left = np.linalg.eigh(fields @ fields.T)
@@ -87,4 +96,4 @@ def sample_nodes(fields: Array, tolerance: float, most: int, spare: float = 1.5)
     leverage[chosen] = -1.0
     chosen += list(np.argsort(leverage)[::-1][: wanted - count])
     numbers = np.sort(np.array(chosen))
-    return numbers, U @ np.linalg.pinv(U[numbers])
+    return U, numbers, np.linalg.pinv(U[numbers])

@@ -52,11 +52,13 @@ class Readout:
         """Mode amplitudes at the readings, (n_times, B, m)."""
         return self.states[:, :, : self.solution.batch.model.size]
 
-    def at(self, points: Array) -> Array:
-        """Temperatures at points (k, 2) in (r, z), m: (n_times, B, k) degC."""
-        return self._fields.get(
-            Content.of(points), lambda: np.asarray(self.modes @ self.solution.batch.model.rows(points).T)
-        )
+    def at(self, points: Array, variant: int) -> Array:
+        """Temperatures of a variant at points (k, 2) in (r, z), m: (n_times, k) degC."""
+        models = self.solution.batch.models
+        if models[variant] is not models[0]:
+            return np.asarray(self.modes[:, variant] @ models[variant].rows(points).T)
+        fields: Array = self._fields.get(Content.of(points), lambda: np.asarray(self.modes @ models[0].rows(points).T))
+        return fields[:, variant]
 
     @functools.cached_property
     def _fields(self) -> Cache[Array]:
@@ -71,9 +73,12 @@ class Readout:
     @functools.cached_property
     def wall(self) -> Array:
         """Temperature gradient through the wall at the end, (B, k) K/m."""
-        _, thickness, inner, outer = self.solution.batch.model.wall
-        end = self.modes[-1]
-        return np.abs(end @ inner.T - end @ outer.T) / thickness
+        models, end = self.solution.batch.models, self.modes[-1]
+        if all(model is models[0] for model in models):
+            _, thickness, inner, outer = models[0].wall
+            return np.abs(end @ inner.T - end @ outer.T) / thickness
+        walls = [model.wall for model in models]
+        return np.array([np.abs((wall[2] - wall[3]) @ a) / wall[1] for wall, a in zip(walls, end, strict=True)])
 
     @functools.cached_property
     def highest(self) -> Array:
@@ -115,7 +120,7 @@ class Readout:
             # Check at these times whether any other node is hotter.
             most = (model.region_rows[region] @ modes[when[region], each].T).max(axis=0)
             needs_search |= set(np.flatnonzero(most > hottest[region][0] + 1e-9).tolist())
-        points, peaks = model.operators.points, []
+        models, peaks = self.solution.batch.models, []
         for b in range(count):
             if b in needs_search:
                 peaks.append(self._full_search(b))
@@ -123,7 +128,9 @@ class Readout:
             peaks.append(
                 _with_tyre(
                     {
-                        region: _peak(points, float(T[b]), int(node[b]), float(self.peak_times[when[region][b]]))
+                        region: _peak(
+                            models[b].points, float(T[b]), int(node[b]), float(self.peak_times[when[region][b]])
+                        )
                         for region, (T, node) in hottest.items()
                     }
                 )
@@ -150,7 +157,10 @@ class Readout:
             of_region = values[:, dofs]
             i, j = np.unravel_index(int(np.argmax(of_region)), of_region.shape)
             peaks[region] = _peak(
-                model.operators.points, float(of_region[i, j]), int(dofs[j]), float(self.peak_times[i])
+                self.solution.batch.models[variant].points,
+                float(of_region[i, j]),
+                int(dofs[j]),
+                float(self.peak_times[i]),
             )
         return _with_tyre(peaks)
 
@@ -178,7 +188,7 @@ class Readout:
             batch = self.solution.batch
             start = np.stack([balance.start for balance in batch.balances])[:, : batch.model.size, None]
             q = batch.heat([just_before(self.times, i)], start)
-            return np.asarray((batch.model.power @ q)[:, :, 0].sum(axis=1))
+            return np.asarray((batch.heat_flows.power @ q)[:, :, 0].sum(axis=1))
 
         return np.asarray(self._heats.get(("cold power", i), compute))
 

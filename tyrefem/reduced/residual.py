@@ -69,8 +69,8 @@ def correction(solution: BatchSolution, place: int, share: float, early: float =
     ----------
     solution, place : solution of the variant's batch, and its place there. share : tau over the phase's duration.
     """
-    balance, model = solution.batch.balances[place], solution.batch.model
-    tyre = balance.tyre
+    balance = solution.batch.balances[place]
+    tyre, model = balance.tyre, balance.model
     full = balance_of(model.operators, tyre.bodies, tyre.boundaries, tyre.sources, balance.reservoirs)
     m = model.size
     fields, sources, largest = [], [], 0.0
@@ -97,6 +97,8 @@ def correction(solution: BatchSolution, place: int, share: float, early: float =
 
 def nearby(model: ReducedModel, number: int, share: float) -> StageMatrix:
     """The factored matrix of the model's base study in a phase; kept with the model."""
+
+    model = model.on_reference
 
     def factored() -> StageMatrix:
         base = model.base

@@ -14,6 +14,7 @@ from tyrefem.inputs.changes import all_changed, value_at
 from tyrefem.inputs.study import StudyData
 from tyrefem.reduced.answers import ReducedOutcome, reduced_answers
 from tyrefem.reduced.model import NotReducibleError, ReducedModel
+from tyrefem.reduced.shapes import shape_numbers
 from tyrefem.reduced.training import ReducedFineness
 from tyrefem.reduced.training_rounds import FullRun, PackedModel, ProgressCallback, Training, check_reducible, pack
 from tyrefem.variants.execution import SweepSettings
@@ -37,6 +38,10 @@ CORRECTION_FACTOR = 1.0
 SAFETY = 0.8
 
 
+#: Share of the tolerance for the modes where the shape varies: the rest is left to the difference of the meshes.
+SHAPES_SHARE = 0.5
+
+
 #: Tables of a study that do not affect temperatures.
 IRRELEVANT_TABLES = ("title", "measured", "cases", "diagnosis", "uncertainty", "explore")
 
@@ -49,7 +54,8 @@ class SurrogateCertificate(Brief):
     ----------
     errors : answer -> largest difference to the validation runs. cases : number of validation runs.
     worst : largest error of any temperature answer, K. tolerance : allowed error, K. trained_on : number of successful
-        training runs and corrections. amended : number of corrections.
+        training runs and corrections. amended : number of corrections. own_mesh : where shapes share a mesh, the
+        largest error of any temperature answer against runs on the variants' own meshes, K.
     """
 
     errors: Mapping[str, float]
@@ -58,11 +64,17 @@ class SurrogateCertificate(Brief):
     tolerance: float
     trained_on: int
     amended: int = 0
+    own_mesh: float | None = None
 
     @property
     def good(self) -> bool:
-        """Is the largest error at most `SAFETY` x tolerance?"""
-        return self.worst <= SAFETY * self.tolerance
+        """Is the largest error at most `SAFETY` x tolerance, and against runs on own meshes at most the tolerance?"""
+        return self.worst <= SAFETY * self.tolerance and (self.own_mesh or 0.0) <= self.tolerance
+
+    @property
+    def error(self) -> float:
+        """Largest error of any temperature answer in the validation runs, K."""
+        return max(self.worst, self.own_mesh or 0.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,7 +94,7 @@ class Surrogate(Brief):
         return {
             **self.model._facts(),
             "varied": [each.label for each in self.varied],
-            "certificate": f"{certificate.worst:.2g} K on {certificate.cases} fresh full runs, "
+            "certificate": f"{certificate.error:.2g} K on {certificate.cases} fresh full runs, "
             f"{certificate.tolerance:g} K wanted",
         }
 
@@ -164,13 +176,16 @@ def surrogate(
             f"no reduced model is certified to {tolerance:g} K; allowed: {LEAST_TOLERANCE:g} K or more"
         )
     report = progress or (lambda what, done, total: None)
-    training = Training(plan, scheduler or Here(), fineness or ReducedFineness.of(tolerance), report, seed)
+    if fineness is None:
+        fineness = ReducedFineness.of(SHAPES_SHARE * tolerance if shape_numbers(plan.varied) else tolerance)
+    training = Training(plan, scheduler or Here(), fineness, report, seed)
     # Full runs at two opposite corners; residual corrections cover the rest of the box.
     places = [np.zeros(len(plan.varied)), np.ones(len(plan.varied))]
     training.run(places, TRAINING_FACTOR * max(tolerance, LEAST_RUN_TOLERANCE), "training", with_answers=False)
     certificate: SurrogateCertificate | None = None
     for trial in range(settings.trials):
         model = training.correction_rounds(1 if trial else settings.rounds, CORRECTION_FACTOR * tolerance)
+        model = training.over_shapes(model)
         places = training.fresh_places(settings.fresh)
         known = len(training.snapshots)
         full_runs = training.run(
@@ -180,40 +195,54 @@ def surrogate(
             model, [plan.study.replace(training.variant(place)) for place in places], plan.time_to
         )
         check_reducible(reduced)
-        pairs = [
-            (reduced_outcome.answers, full_run.answers)
+        both = [
+            (reduced_outcome.answers, full_run)
             for reduced_outcome, full_run in zip(reduced, full_runs, strict=True)
             if isinstance(reduced_outcome, Answered) and isinstance(full_run, FullRun)
         ]
-        if not pairs:
+        if not both:
             raise NotReducibleError("all validation runs failed")
-        certificate = certified(pairs, tolerance, known, training.correction_count)
+        pairs = [(answered, full_run.answers) for answered, full_run in both]
+        on_own_mesh = [
+            (answered, full_run.own_answers) for answered, full_run in both if full_run.own_answers is not None
+        ]
+        certificate = certified(pairs, tolerance, known, training.correction_count, on_own_mesh)
         if certificate.good:
             return Surrogate(model, plan.varied, certificate, plan.time_to)
     assert certificate is not None
+    if certificate.worst <= SAFETY * tolerance:
+        raise NotReducibleError(
+            f"the shapes' common mesh and their own meshes differ by {certificate.own_mesh:.3g} K; allowed:"
+            f" {tolerance:g} K; a smaller mesh.size brings them together"
+        )
     raise NotReducibleError(
         f"after {certificate.amended} corrections the error in the validation runs is {certificate.worst:.3g} K;"
         f" allowed: {SAFETY:g} x {tolerance:g} K"
     )
 
 
+#: Answers of the reduced model and of a full run.
+Pair = tuple[Mapping[str, Any], Mapping[str, Any]]
+
+
 def certified(
-    pairs: Sequence[tuple[Mapping[str, Any], Mapping[str, Any]]], tolerance: float, trained_on: int, amended: int
+    pairs: Sequence[Pair], tolerance: float, trained_on: int, amended: int, on_own_mesh: Sequence[Pair] = ()
 ) -> SurrogateCertificate:
-    """The certificate from pairs of answers (reduced model, full run)."""
+    """The certificate from pairs of answers (reduced model, full run); ``on_own_mesh``: on the variants' meshes."""
     names = [name for name, value in pairs[0][1].items() if isinstance(value, float)]
-    errors = {name: max(abs(a[name] - b[name]) for a, b in pairs) for name in names}
+    errors = {name: max(abs(a[name] - b[name]) for a, b in (*pairs, *on_own_mesh)) for name in names}
     worst = max(temperature_error(a, b) for a, b in pairs)
-    return SurrogateCertificate(errors, len(pairs), worst, tolerance, trained_on, amended)
+    own_mesh = max((temperature_error(a, b) for a, b in on_own_mesh), default=None)
+    return SurrogateCertificate(errors, len(pairs), worst, tolerance, trained_on, amended, own_mesh)
 
 
 def check_varied(plan: Plan) -> None:
-    """Raise `NotReducibleError` if a plan varies something that needs another mesh or changing strain cycles."""
+    """Raise `NotReducibleError` if a plan varies the mesh's fineness, or needs strain cycles that change in a run."""
     if not plan.varied:
         raise NotReducibleError("variants from a list span no box for training")
     for number in plan.varied:
         for key in number.keys:
-            if key.split(".")[0] in ("section", "mesh", "output", "numerics"):
+            if key.split(".")[0] in ("mesh", "output", "numerics"):
                 raise NotReducibleError(f"'{key}' changes the mesh or the numerical precision")
     if plan.study.card.mechanics.feedback is not None:
         raise NotReducibleError("strain cycles that follow the temperature")

@@ -35,8 +35,8 @@ class ReducedFineness:
 
     modes_tolerance: float = 4e-4
     source_tolerance: float = 8e-6
-    most_modes: int = 120
-    most_sources: int = 120
+    most_modes: int = 140
+    most_sources: int = 140
     fields: int = 14
 
     @classmethod

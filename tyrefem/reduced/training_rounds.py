@@ -16,10 +16,13 @@ from numpy.typing import NDArray
 
 from tyrefem.cache import Cache
 from tyrefem.errors import InputError
+from tyrefem.geometry.meshing.mapped import Counts
 from tyrefem.reduced.answers import ReducedOutcome, batch_solutions, reduced_answers
 from tyrefem.reduced.model import NotReducibleError, ReducedModel
 from tyrefem.reduced.residual import TIME_TOLERANCE as CORRECTION_TOLERANCE
 from tyrefem.reduced.residual import correction
+from tyrefem.reduced.shape_operators import ShapeOperators
+from tyrefem.reduced.shapes import counts_of, shape_count, tyre_of, with_shapes
 from tyrefem.reduced.training import ReducedFineness, Snapshots, snapshots, trained, training_run
 from tyrefem.simulation.rolling_tyre import RollingTyre
 from tyrefem.simulation.run import run
@@ -39,7 +42,8 @@ class PackedModel:
 
     Parameters
     ----------
-    base : the study that it was made for. V, samples, nodes_from_samples, hot : as in `ReducedModel`.
+    base : the study that it was made for. V, samples, nodes_from_samples, hot, shapes : as in `ReducedModel`.
+    counts : rows and gaps of the mesh that all shapes of the section share; None: the section does not vary.
     """
 
     base: Bundle
@@ -47,33 +51,43 @@ class PackedModel:
     samples: Mapping[str, Array]
     nodes_from_samples: Array
     hot: Mapping[str, NDArray[np.intp]]
+    counts: Counts | None = None
+    shapes: ShapeOperators | None = None
 
     @functools.cached_property
     def digest(self) -> str:
         """Digest of the study and the modes."""
-        return hashlib.sha256(self.base.digest.encode() + self.V.tobytes()).hexdigest()[:16]
+        text = f"{self.base.digest} {self.counts} {self.shapes is None}"
+        return hashlib.sha256(text.encode() + self.V.tobytes()).hexdigest()[:16]
 
     def unpacked(self) -> ReducedModel:
         """The reduced model, unpacked once per process."""
         return _models.get(
             self.digest,
-            lambda: ReducedModel(base_of(self.base), self.V, self.samples, self.nodes_from_samples, self.hot),
+            lambda: ReducedModel(
+                base_of(self.base, self.counts), self.V, self.samples, self.nodes_from_samples, self.hot, self.shapes
+            ),
         )
 
 
-def base_of(packed: Bundle) -> RollingTyre:
-    """The tyre of a study, built once per process; all variants use its mesh and operators."""
-    return _bases.get(packed.digest, lambda: RollingTyre(unpacked(packed)))
+def base_of(packed: Bundle, counts: Counts | None = None) -> RollingTyre:
+    """The tyre of a study, built once per process; all variants use its mesh, or its topology (``counts``)."""
+    return _bases.get((packed.digest, counts), lambda: tyre_of(unpacked(packed), counts))
 
 
 def remember(packed: Bundle, base: RollingTyre) -> None:
     """Make `base_of` return this tyre in this process, unless it has a tyre of the same study."""
-    _bases.get(packed.digest, lambda: base)
+    _bases.get((packed.digest, _counts(base)), lambda: base)
+
+
+def _counts(base: RollingTyre) -> Counts | None:
+    return None if base.topology is None else base.topology.counts
 
 
 def pack(model: ReducedModel, base: Bundle) -> PackedModel:
     """A model packed for other processes; ``base``: the study that it was made for."""
-    return PackedModel(base, model.V, model.samples, model.nodes_from_samples, model.hot)
+    arrays = (model.V, model.samples, model.nodes_from_samples, model.hot)
+    return PackedModel(base, *arrays, _counts(model.base), model.shapes)
 
 
 #: Models and tyres that a process keeps: two sweeps may run on threads of one worker.
@@ -131,33 +145,41 @@ class FullRunTask:
     Parameters
     ----------
     variant : the variant. fields : snapshots to take. time_tolerance : K, of the run. with_answers : compute answers?
+    counts : of the mesh that all shapes share; answers are then also those of a run on the variant's own mesh.
     """
 
     variant: Task
     fields: int
     time_tolerance: float
     with_answers: bool
+    counts: Counts | None = None
 
 
 @dataclass(frozen=True, eq=False)
 class FullRun:
-    """Snapshots of a full run, and its answers; without answers the mapping is empty."""
+    """Snapshots of a full run, and its answers; without answers the mapping is empty.
+
+    ``own_answers``: of a run on the variant's own mesh, if the shapes share another one.
+    """
 
     snapshots: Snapshots
     answers: Mapping[str, Any] = field(default_factory=dict)
+    own_answers: Mapping[str, Any] | None = None
 
 
 def perform_full_run(task: FullRunTask) -> FullRun | Failed:
     """Run in a worker: a full run of a variant."""
     from tyrefem.conduction import SolverError
 
-    variant, base = task.variant, base_of(task.variant.packed)
+    variant, base = task.variant, base_of(task.variant.packed, task.counts)
     try:
         study = base.study.replace(variant.changes)
         if not task.with_answers:
             return FullRun(training_run(RollingTyre(study, base), task.time_tolerance))
-        result = run(study.replace({"numerics.tolerance": f"{task.time_tolerance:.6g} delta_degC"}), like=base)
-        return FullRun(snapshots(result, task.fields), answers(result, variant.time_to))
+        study = study.replace({"numerics.tolerance": f"{task.time_tolerance:.6g} delta_degC"})
+        result = run(study, like=base)
+        at_own_mesh = None if task.counts is None else answers(run(study), variant.time_to)
+        return FullRun(snapshots(result, task.fields), answers(result, variant.time_to), at_own_mesh)
     except (InputError, SolverError) as error:
         return Failed(str(error))
 
@@ -218,7 +240,8 @@ class Training:
         from scipy.stats import qmc
 
         self.plan, self.scheduler, self.fineness, self.report = plan, scheduler, fineness, report
-        self.base = RollingTyre(plan.study)
+        self.counts = counts_of(plan)
+        self.base = tyre_of(plan.study, self.counts)
         remember(plan.packed, self.base)
         self.snapshots: list[Snapshots] = []
         self.correction_count = 0
@@ -243,6 +266,7 @@ class Training:
                 self.fineness.fields,
                 time_tolerance,
                 with_answers,
+                self.counts,
             )
             for n, place in enumerate(places)
         ]
@@ -259,7 +283,7 @@ class Training:
         for _ in range(most):
             model = trained(self.base, self.snapshots, self.fineness)
             packed = pack(model, self.plan.packed)
-            places = [np.clip(0.5 + STRETCH * (place - 0.5), 0.0, 1.0) for place in self.fresh_places(self.round_size)]
+            places = self._stretched(self.round_size)
             changes = [self.variant(place) for place in places]
             shares = [HORIZONS[n % len(HORIZONS)] for n in range(len(places))]
             firsts = range(0, len(places), CORRECTIONS_PER_TASK)
@@ -277,6 +301,22 @@ class Training:
             if max((outcome.largest for outcome in corrected), default=0.0) <= enough:
                 break
         return trained(self.base, self.snapshots, self.fineness)
+
+    def over_shapes(self, model: ReducedModel) -> ReducedModel:
+        """The model with projected operators over the box's shapes, if the section varies."""
+        if self.counts is None:
+            return model
+        studies = []
+        for place in self._stretched(shape_count(self.plan.varied)):
+            try:
+                studies.append(self.plan.study.replace(self.variant(place)))
+            except InputError:
+                continue
+        return with_shapes(model, studies)
+
+    def _stretched(self, count: int) -> list[Array]:
+        """New points of the unit box; many lie on its faces."""
+        return [np.clip(0.5 + STRETCH * (place - 0.5), 0.0, 1.0) for place in self.fresh_places(count)]
 
     def _outcomes(
         self, work: Callable[..., Result], tasks: Sequence[Any], what: str, common: Any = None

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from tyrefem.conduction.field import Peak
 from tyrefem.geometry.wall import inside_mesh
 from tyrefem.inputs.study import StudyData
+from tyrefem.reduced.model import ReducedModel
 from tyrefem.reduced.readout import Readout
 from tyrefem.simulation.heat_budget import HeatBudget
 from tyrefem.simulation.result import ResultData
@@ -47,6 +48,10 @@ class Variant:
         return self.readout.solution.batch.balances[self.number].tyre
 
     @property
+    def _model(self) -> ReducedModel:
+        return self.readout.solution.batch.models[self.number]
+
+    @property
     def study(self) -> StudyData:
         """The study of the variant."""
         return self.tyre.study
@@ -79,7 +84,7 @@ class Variant:
             s, depth = self.study.section.locate(np.array([peak.point]))
             return float(s[0]), float(depth[0])
 
-        return self.readout.solution.batch.model.node_places.get((self.study.section, peak.point), located)
+        return self._model.node_places.get((self.study.section, peak.point), located)
 
     def at(self, points: ArrayLike) -> Array:
         """Temperatures at points (n, 2) in (r, z), m: (n_times, n), degC."""
@@ -91,11 +96,11 @@ class Variant:
         places = true_places(self.study)
         if not places:
             return {}
-        model, section, stated = self.readout.solution.batch.model, self.study.section, tuple(places.values())
+        model, section, stated = self._model, self.study.section, tuple(places.values())
         built_in = model.sensor_places.get(
             (section, stated), lambda: inside_mesh(section, self.tyre.mesh.size, *section.locate(np.array(stated)))
         )
-        return recorded(self.study, self.times, self.readout.at(built_in)[:, self.number])
+        return recorded(self.study, self.times, self.readout.at(built_in, self.number))
 
     @property
     def gas_temperature(self) -> Array:
@@ -124,7 +129,7 @@ class Variant:
     @property
     def wall_gradient(self) -> tuple[Array, Array]:
         """Stations s (k,) m along the meridian, and |T inner - T outer| / thickness there at the end, K/m."""
-        return self.readout.solution.batch.model.wall[0], self.readout.wall[self.number]
+        return self._model.wall[0], self.readout.wall[self.number]
 
     @property
     def highest(self) -> Array:

@@ -125,7 +125,7 @@ def sample_summary(sweep: Sweep) -> dict[str, Any]:
         "reduced_model": None
         if certificate is None
         else {
-            "largest_error_K": certificate.worst,
+            "largest_error_K": certificate.error,
             "tolerance_K": certificate.tolerance,
             "fresh_cases": certificate.cases,
             "training_runs": certificate.trained_on - certificate.amended,
@@ -158,7 +158,7 @@ def computation_sentence(sweep: Sweep) -> str:
     if certificate is not None:
         words += (
             f"; {sweep.reduced} by a reduced model from {certificate.trained_on - certificate.amended} runs"
-            f" and {certificate.amended} corrections, within {certificate.worst:.2g} K of"
+            f" and {certificate.amended} corrections, within {certificate.error:.2g} K of"
             f" {certificate.cases} fresh full runs"
         )
     elif sweep.outcomes:

@@ -18,6 +18,7 @@ from tyrefem.conduction.added_states import AddedStates, BodyTemperatures
 from tyrefem.effects.combined import Source
 from tyrefem.errors import InputError
 from tyrefem.geometry.meshing import TyreMesh
+from tyrefem.geometry.meshing.topology import Topology
 from tyrefem.mechanics.cycle_schedule import REMEMBERED, CycleSchedule, same_cycles
 from tyrefem.mechanics.nearby_cycles import NearbyCycles
 from tyrefem.mechanics.strain_cycle import LOSS_FACTOR
@@ -44,16 +45,20 @@ class RollingTyre(Surroundings):
     ``cycles``: strain cycles in place of those at the drive's own pressure and the cards' moduli.
     ``parts``: the strain cycles and the mesh of this very tyre, computed before.
     ``near``: takes strain cycles of studies near this one from few solutions, also for tyres that are ``like`` this.
+    ``topology``: the mesh has these elements, whatever the section's shape; also for tyres that are ``like`` this.
     """
 
     like: InitVar[RollingTyre | None] = None
     cycles: CycleSchedule | None = None
     near: NearbyCycles | None = None
+    topology: Topology | None = None
     parts: InitVar[tuple[CycleSchedule, TyreMesh] | None] = None
     _similar: weakref.ref[RollingTyre] | None = field(default=None, init=False, repr=False)
 
     def __post_init__(self, like: RollingTyre | None, parts: tuple[CycleSchedule, TyreMesh] | None) -> None:
         object.__setattr__(self, "_similar", None if like is None else weakref.ref(like))
+        if self.topology is None and like is not None:
+            object.__setattr__(self, "topology", like.topology)
         if parts is not None:
             self.__dict__["schedule"], self.__dict__["mesh"] = parts
 
@@ -67,7 +72,7 @@ class RollingTyre(Surroundings):
         known: dict[str, Any] = {
             name: self.__dict__[name] for name in ("mesh", "schedule", "states") if name in self.__dict__
         }
-        return {"study": self.study, "_similar": None, "cycles": self.cycles, **known}
+        return {"study": self.study, "_similar": None, "cycles": self.cycles, "topology": self.topology, **known}
 
     def __repr__(self) -> str:
         return f"RollingTyre {self.study.name}"
@@ -118,6 +123,8 @@ class RollingTyre(Surroundings):
             if study.section == other.section and study.card.mesh == other.card.mesh and zones == like.schedule.zones:
                 return like.mesh
         named = {zone.name: (zone.region, zone.start, zone.end) for zone in zones}
+        if self.topology is not None:
+            return self.topology.mesh_of(self.study.section, named)
         if self.study.card.mesh.file is not None:
             return self.study.mesh().with_zones(named)
         key = self.study.section, repr(self.study.card.mesh), tuple(named.items())

@@ -209,7 +209,7 @@ class Envelope:
             sentences.append(f"Load times speed that is safe at all of these loads: {', '.join(rated)}.")
         by = f"{self.runs} full runs"
         if self.certificate is not None:
-            by = f"{self.runs} variants by a reduced model, error of temperatures {self.certificate.worst:.2g} K"
+            by = f"{self.runs} variants by a reduced model, error of temperatures {self.certificate.error:.2g} K"
         sentences.append(f"Computed by {by}.")
         return sentences
 
@@ -266,7 +266,7 @@ def envelope(
             for n, outcome in zip(waiting, outcomes, strict=True):
                 searches[n].record(outcome, card.answer)
                 by[n] = "" if isinstance(outcome, Failed) else outcome.by
-    error = {"reduced": evaluate.certificate.worst if evaluate.certificate else math.nan, "full": 0.0}
+    error = {"reduced": evaluate.certificate.error if evaluate.certificate else math.nan, "full": 0.0}
     rows = [
         {
             "load": load,

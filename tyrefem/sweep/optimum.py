@@ -232,7 +232,7 @@ class Optimum:
         if certificate is not None:
             stated = certificate.errors.get(self.answer)
             error = "" if stated is None else f"; {name_of(self.answer)} to ±{shown(self.answer, stated, 2)}"
-            sentences.append(f"The search used a reduced model with an error of {certificate.worst:.2g} K{error}.")
+            sentences.append(f"The search used a reduced model with an error of {certificate.error:.2g} K{error}.")
         return sentences
 
     def to_dict(self) -> dict[str, Any]:

@@ -54,7 +54,7 @@ class Sweep(Brief):
             "variants": f"{len(self.outcomes)} of {len(self.plan.variants)} finished, {len(self.failed)} failed",
             "answers": self.answers,
             "answered by": f"{len(self.outcomes) - reduced} full runs"
-            + (f", {reduced} by the reduced model, error {self.certificate.worst:.2g} K" if self.certificate else ""),
+            + (f", {reduced} by the reduced model, error {self.certificate.error:.2g} K" if self.certificate else ""),
             "wall time": f"{self.seconds:.3g} s",
         }
 
@@ -85,7 +85,7 @@ class Sweep(Brief):
         outcome, values = self.outcomes[number], self.plan.row(number)
         if isinstance(outcome, Failed):
             return values | {"by": "", "error_K": None, "failure": outcome.reason}
-        error = self.certificate.worst if outcome.by == "reduced" and self.certificate else 0.0
+        error = self.certificate.error if outcome.by == "reduced" and self.certificate else 0.0
         return values | dict(outcome.answers) | {"by": outcome.by, "error_K": error, "failure": ""}
 
     def _within_limits(self, table: pd.DataFrame) -> Any:

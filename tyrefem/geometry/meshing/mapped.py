@@ -7,7 +7,7 @@ Node spacing along a line follows a given local size.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
@@ -112,10 +112,23 @@ class MappedGrid:
     layer: NDArray[np.int64]
 
 
-def make_grid(section: Section, size: float, through: int) -> MappedGrid:
-    """Rows and stations for a size [m], conforming to every layer, region and boundary."""
-    rows = [_rows(section, index, size, through) for index in range(len(section.layers))]
-    s = _stations(section, size, rows)
+@dataclass(frozen=True)
+class Counts:
+    """Numbers of rows of every layer, and of gaps between neighbouring `knots`."""
+
+    rows: tuple[int, ...]
+    gaps: tuple[int, ...]
+
+
+def make_grid(section: Section, size: float, through: int, counts: Counts | None = None) -> MappedGrid:
+    """Rows and stations for a size [m], conforming to every layer, region and boundary.
+
+    ``counts``: at least so many rows and gaps; None: as many as the size needs.
+    """
+    rows = [rows_of(section, index, size, through) for index in range(len(section.layers))]
+    if counts is not None:
+        rows = [max(pair) for pair in zip(rows, counts.rows, strict=True)]
+    s = _stations(section, size, rows, None if counts is None else counts.gaps)
     faces = section.interfaces(s)
     heights = []
     for index, count in enumerate(rows):
@@ -128,7 +141,7 @@ def make_grid(section: Section, size: float, through: int) -> MappedGrid:
 
 def grid_lines(section: Section, size: float, through: int) -> tuple[int, int]:
     """Number of lines of `make_grid` across the meridian and along it."""
-    rows = [_rows(section, index, size, through) for index in range(len(section.layers))]
+    rows = [rows_of(section, index, size, through) for index in range(len(section.layers))]
     return len(_stations(section, size, rows)), sum(rows) + 1
 
 
@@ -136,7 +149,8 @@ def _outermost(section: Section, index: int) -> bool:
     return index == len(section.layers) - 1
 
 
-def _rows(section: Section, index: int, size: float, through: int) -> int:
+def rows_of(section: Section, index: int, size: float, through: int) -> int:
+    """Number of rows that a layer needs at its thickest place."""
     s = stations(section, 0.0, section.line.length, size)
     thickest = float(section.built_layers[index].thickness(s).max())
     first = size * SURFACE_SHARE if _outermost(section, index) else size * CORE_SHARE
@@ -149,12 +163,12 @@ def _fractions(section: Section, index: int, thickness: float, size: float, rows
     return np.linspace(0.0, 1.0, rows + 1)
 
 
-def _stations(section: Section, size: float, rows: list[int]) -> Array:
-    """Stations at most ``size`` apart, closer at the rim's end face, at changes of boundary and in thin layers."""
-    length = section.line.length
+def target_size(section: Section, size: float, rows: Sequence[int]) -> Callable[[Array], Array]:
+    """Local size along the meridian: at most ``size``, less at the rim's end face, at changes of boundary and in thin
+    layers with so many ``rows``."""
     changes = np.array([end for _, _, end in section.outer.parts()])
 
-    def target_size(s: Array) -> Array:
+    def local_size(s: Array) -> Array:
         rise = SURFACE_SHARE * size + GROWTH * np.abs(s[:, None] - changes).min(axis=1)
         thin = np.full_like(s, size)
         for index, (layer, count) in enumerate(zip(section.built_layers, rows, strict=True)):
@@ -165,8 +179,15 @@ def _stations(section: Section, size: float, rows: list[int]) -> Array:
             thin = np.minimum(thin, ASPECT * row)
         return np.minimum(np.minimum(size, rise), thin)
 
-    runs = [graded(a, b, target_size)[:-1] for a, b in pairwise(knots(section, size))]
-    return np.concatenate([*runs, [length]])
+    return local_size
+
+
+def _stations(section: Section, size: float, rows: Sequence[int], gaps: Sequence[int] | None = None) -> Array:
+    """Stations with gaps of the `target_size`; ``gaps``: at least so many between neighbouring knots."""
+    local_size, spans = target_size(section, size, rows), list(pairwise(knots(section, size)))
+    least = [1] * len(spans) if gaps is None else gaps
+    runs = [graded(a, b, local_size, gap)[:-1] for (a, b), gap in zip(spans, least, strict=True)]
+    return np.concatenate([*runs, [section.line.length]])
 
 
 Indices = NDArray[np.int64]
@@ -174,13 +195,22 @@ Indices = NDArray[np.int64]
 
 def mapped_mesh(section: Section, size: float, cell: str, through: int) -> Any:
     """scikit-fem mesh of a section, grid lines on every border of layers, regions and boundaries."""
+    return mesh_on(section, make_grid(section.as_half(), size, through), cell)
+
+
+def grid_points(half: Section, s: Array, y: Array) -> Array:
+    """(r, z) of the nodes of a grid, (n_rows + 1, n_columns + 1, 2) m: y (n_rows + 1, n_columns + 1) above s."""
+    points = half.line.position(s) + y[..., None] * half.line.normal(s)
+    points[:, 0, 1] = 0.0
+    return np.asarray(points)
+
+
+def mesh_on(section: Section, grid: MappedGrid, cell: str) -> Any:
+    """scikit-fem mesh of a section on a grid of its half."""
     half = section.as_half()
-    grid = make_grid(half, size, through)
     columns, rows = len(grid.s), len(grid.y)
-    points = half.line.position(grid.s) + grid.y[..., None] * half.line.normal(grid.s)
-    points = points.reshape(-1, 2)
+    points = grid_points(half, grid.s, grid.y).reshape(-1, 2)
     node = np.arange(rows * columns).reshape(rows, columns)
-    points[node[:, 0], 1] = 0.0
     quads = np.stack([node[:-1, :-1], node[1:, :-1], node[1:, 1:], node[:-1, 1:]], axis=-1).reshape(-1, 4)
     names = _region_names(half, grid)
     if cell == "tri":
