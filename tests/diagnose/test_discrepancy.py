@@ -143,6 +143,32 @@ def test_an_effect_in_one_run_is_told_but_not_named_where_more_is_wrong() -> Non
         assert (told in revision.reasons) is not named
 
 
+def test_of_two_effects_the_member_that_the_held_out_runs_ask_for_is_named() -> None:
+    judgement, _, robust = diagnosed(measured(hot=25.0, off=0.25))
+    again = replace(judgement, verdict=UNEXPLAINED)
+    # ln p of the held-out runs with neither effect, with hot, with cold, with both.
+    for held_out, members in (
+        ((-60.0, -50.0, -55.0, -49.0), (HOT, COLD)),
+        ((-60.0, -50.0, -55.0, -52.0), (HOT,)),
+        ((-50.0, -52.0, -51.0, -55.0), ()),
+        ((-60.0, -50.0, -50.0, -52.0), ()),
+    ):
+        models = []
+        for model in robust.models:
+            fit = max(model.fits.values(), key=lambda each: each.p_value)
+            sets = ((), (HOT,), (COLD,), (HOT, COLD))
+            fits = {part: replace(fit, members=part, held_out=x) for part, x in zip(sets, held_out, strict=True)}
+            values = {"hot": (25.0, 1.0), "cold": (9.0, 1.0)}
+            models.append(replace(model, fits=fits, named={"hot": 1.0, "cold": 1.0}, values=values))
+        revision = beside_discrepancies(again, replace(robust, models=tuple(models)), SETTINGS)
+        assert set(revision.members) == set(members)
+        left = [each.key for each in (HOT, COLD) if each not in members]
+        told = "is not named: the held-out runs are predicted better without it"
+        assert [reason for reason in revision.reasons if told in reason] == (
+            [f"{' + '.join(left)} {told}"] if left else []
+        )
+
+
 @pytest.mark.parametrize("hot", [0.0, 25.0])
 def test_where_nothing_explains_the_data_only_effects_that_may_be_named_cost_fits(hot: float) -> None:
     data = measured(hot=hot, off=0.25)

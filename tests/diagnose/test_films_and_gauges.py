@@ -13,12 +13,13 @@ from formula import Case, case, effect
 import tyrefem as tf
 from tyrefem.diagnose.candidates import SetPrior
 from tyrefem.diagnose.criterion import LogEvidence
-from tyrefem.diagnose.discrepancy import ENERGY, FURTHER, NONE, READINGS
+from tyrefem.diagnose.discrepancy import ENERGY, FURTHER, NONE, READINGS, Discrepancy, without
 from tyrefem.diagnose.energy_shapes import courses, energy_shapes
+from tyrefem.diagnose.fits import first_fits
 from tyrefem.diagnose.forward_selection import ForwardSelection
 from tyrefem.diagnose.gauges import gauges
 from tyrefem.diagnose.partly import beside_discrepancies
-from tyrefem.diagnose.ranked_beside import robustness
+from tyrefem.diagnose.ranked_beside import RankedBeside, fit_beside, robustness
 from tyrefem.diagnose.robustness import Robustness, UnderDiscrepancy
 from tyrefem.diagnose.selection import SelectionProblem
 from tyrefem.diagnose.settings import DEFAULT
@@ -66,16 +67,56 @@ def test_an_effect_is_named_beside_gauges_and_films_that_differ_too(hot: float) 
     assert leading.name == ENERGY
     assert FURTHER in leading.words
     assert leading.explains
-    # The film's law is a part of the discrepancy: its effect is told, with no fit of its own.
+    # The film's law is a part of the discrepancy: its effect has a probability and an amount, but no fit of its own.
     assert leading.named[FILM.key] > 0.99
     assert not any(FILM in members for members in leading.fits)
     assert leading.named.get("cold", 0.0) < 0.5
+    assert leading.allowed == (FILM,)
+    x, sd = leading.values[FILM.key]
+    assert abs(x + 0.4) < 3 * sd < 0.2
     revision = beside_discrepancies(judgement, robust, SETTINGS)
-    assert revision.members == ((HOT,) if hot else ())
-    assert revision.verdict == (PARTLY if hot else UNEXPLAINED)
+    assert revision.members == ((HOT, FILM) if hot else (FILM,))
+    assert revision.verdict == PARTLY
     if hot:
         low, high = robust.interval(HOT.amplitudes[0])
         assert low < hot < high
+    # Fitted as an effect, the film's law takes what the discrepancy no longer allows for.
+    (alone,) = first_fits(data.residuals, data.predictions, [revision.members])
+    fit = fit_beside(problem, leading, alone)
+    assert abs(fit.values[FILM.amplitudes[0]] + 0.4) < 3 * sd
+    assert leading.discrepancy is not None
+    assert without(leading.discrepancy, FILM.amplitudes).further == (GAUGE,)
+
+
+def test_a_film_without_whose_law_held_out_runs_are_predicted_better_is_not_named() -> None:
+    data = measured(25.0)
+    prior = SetPrior(EVERY, 0.5, SETTINGS.size_shares)
+    problem = SelectionProblem(data.residuals, data.predictions, EVERY, prior, LogEvidence())
+    scored = problem.settled(ForwardSelection().search(problem))
+    judgement = replace(judge(ranked(scored), lambda members: None, SETTINGS), verdict=UNEXPLAINED)
+    robust = robustness(problem, scored, certain=False, explained=False)
+    leading = robust.models[0]
+    fits = {part: replace(fit, held_out=-50.0 if HOT in part else -60.0) for part, fit in leading.fits.items()}
+    for without_film, named in ((-52.0, (HOT, FILM)), (-48.0, (HOT,))):
+        model = replace(leading, fits=fits, held_out_without={FILM.key: without_film})
+        models = (model, *robust.models[1:])
+        revision = beside_discrepancies(judgement, replace(robust, models=models), SETTINGS)
+        assert revision.members == named
+
+
+def test_a_set_is_fitted_from_a_larger_one_whose_further_effect_is_zero() -> None:
+    data = measured(25.0)
+    prior = SetPrior(EVERY, 0.5, SETTINGS.size_shares)
+    problem = SelectionProblem(data.residuals, data.predictions, EVERY, prior, LogEvidence())
+    beside = RankedBeside(problem, Discrepancy(NONE, 0.0))
+    (whole,) = first_fits(data.residuals, data.predictions, [(HOT, COLD)])
+    beside._take([whole])
+    beside.estimates = {(HOT,): beside.score((HOT, COLD))}
+    beside.further()
+    (alone,) = first_fits(data.residuals, data.predictions, [(HOT,)])
+    fit = beside.fits[(HOT,)]
+    assert fit.members == (HOT,)
+    assert fit.log_evidence == pytest.approx(alone.log_evidence, abs=0.5)
 
 
 def under(name: str, probability: float, hot: float, size: float = 0.0, p_value: float = 0.5) -> UnderDiscrepancy:

@@ -34,6 +34,8 @@ KINDS = {"one": 0.55, "two": 0.15, "none": 0.15, "outside": 0.15}
 #: Models of the synthetic data: the study's with hidden causes; one that differs in structure, too.
 ORDINARY, STRUCTURAL = "ordinary", "structural"
 DATA_MODELS = (ORDINARY, STRUCTURAL)
+#: Most effects in a set: two are hidden, and in structural data speed laws of films differ besides.
+LARGEST = {ORDINARY: 2, STRUCTURAL: 3}
 #: Number of leading sets in a row of ``blind.json``.
 LEADING = 4
 #: Stream of random numbers of the structural differences: the hidden causes are those of the ordinary case.
@@ -282,7 +284,9 @@ def run_case(
         beside = alone if data_model == ORDINARY else identifiable(evaluations, known, case, data_model)
     model = other_model(study, case) if data_model == STRUCTURAL else None
     data = measured(study, case, mesh=mesh, model=model)
-    diagnosis = diagnose(study, data, largest=2, known=known, rerun=False, verdict_only=True, looks=1, reduced=reduced)
+    diagnosis = diagnose(
+        study, data, largest=LARGEST[data_model], known=known, rerun=False, verdict_only=True, looks=1, reduced=reduced
+    )
     parts = None if model is None else model.to_dict(mesh_of(data_model) if mesh is None else mesh)
     return BlindOutcome(case, beside, outcome_row(diagnosis), parts, alone)
 

@@ -165,6 +165,7 @@ class SetPrior:
     No effect: 1 - ``expected``. Sets of n effects: ``expected`` x ``shares[n - 1]``, shared evenly by all sets of n
     different effects. The share of an effect is shared evenly by its variants; of an effect that is also a candidate
     in single runs, these have ``odd_run`` of the share, evenly. The prior corrects for the number of candidates.
+    Each effect beyond the number of ``shares`` has the last share as a factor.
     """
 
     def __init__(
@@ -187,5 +188,7 @@ class SetPrior:
         n = len(members)
         if n == 0:
             return math.log(1 - self.expected)
-        size = math.log(self.expected * self.shares[n - 1]) - math.log(math.comb(max(self.effects, n), n))
+        beyond = max(n - len(self.shares), 0)
+        share = self.shares[n - beyond - 1] * self.shares[-1] ** beyond
+        size = math.log(self.expected * share) - math.log(math.comb(max(self.effects, n), n))
         return size + sum(self._log_share[member.name, bool(member.runs)] for member in members)

@@ -83,6 +83,17 @@ def beside_law(residuals: Residuals, law: str, changes: Sequence[Array]) -> Disc
     return Discrepancy(f"{LAW}{law}", 0.0, _shared(residuals, [of_runs]), energy, tuple(changes))
 
 
+def without(discrepancy: Discrepancy, unknowns: Collection[Unknown]) -> Discrepancy:
+    """A discrepancy that does not allow for some of its ``further`` unknowns."""
+    left_out = [place for place, unknown in enumerate(discrepancy.further) if unknown in unknowns]
+    shared = discrepancy.shared_error
+    if shared is None or not left_out:
+        return discrepancy
+    fitted, held_out = (np.delete(columns, left_out, axis=1) for columns in (shared.fitted, shared.held_out))
+    further = tuple(unknown for unknown in discrepancy.further if unknown not in unknowns)
+    return replace(discrepancy, shared_error=SharedError(fitted, held_out), further=further)
+
+
 def with_courses(residuals: Residuals, discrepancy: Discrepancy, size: float) -> Discrepancy:
     """A discrepancy with errors of the readings that neighbours in time share too, of ``size`` (K)."""
     known, further = discrepancy.shared_error, _shared(residuals, _courses(residuals, size))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scipy.special import chdtrc
 
 from tyrefem.brief import Brief
-from tyrefem.diagnose.candidates import Members
+from tyrefem.diagnose.candidates import Candidate, Members
 from tyrefem.diagnose.evidence import Posterior
 from tyrefem.diagnose.gauss_newton import FitState, initial_state
 from tyrefem.diagnose.linear_model import DesignMatrix, LinearModel
@@ -116,6 +116,27 @@ class FittedSet(Brief):
         """Probability of a misfit at least as large if the model is right: chi-squared with one degree per block."""
         return float(chdtrc(self.readings, self.misfit))
 
+    def without(self, members: Sequence[Candidate]) -> FittedSet:
+        """The set with effects left out that have amplitudes only, at the same point: a start for its fit."""
+        state = self.state.without(members)
+        kept = np.array([unknown in state.unknowns for unknown in self.unknowns])
+        design = DesignMatrix(state.unknowns, len(state.unknowns), state.J)
+        posterior = Posterior(
+            state.x,
+            self.posterior.covariance[np.ix_(kept, kept)],
+            self.posterior.log_evidence,
+            self.posterior.at_bound[kept],
+            self.posterior.beyond[kept],
+        )
+        return replace(
+            self,
+            members=state.members,
+            unknowns=state.unknowns,
+            posterior=posterior,
+            linear=LinearModel(design, state.r + state.J @ state.x),
+            state=state,
+        )
+
     @property
     def at_bound(self) -> tuple[str, ...]:
         """Keys of the effects' amplitudes that end on a bound and whose best value lies clearly beyond it.
@@ -157,22 +178,30 @@ def continued(
 
 
 def fitted_beside(
-    predictions: Predictions, fits: Sequence[tuple[FittedSet, Residuals]], tick: Tick = None
+    predictions: Predictions,
+    fits: Sequence[tuple[FittedSet, Residuals]],
+    tick: Tick = None,
+    members: Members = (),
 ) -> list[FittedSet]:
     """Fits continued beside other discrepancies: pairs of a fit and of the residuals with a shared error.
 
-    Unknowns that belong to every model of those residuals join the fit. The steps take no new sensitivities.
+    Unknowns that belong to every model of those residuals join the fit, and ``members``, effects with amplitudes. The
+    steps take no new sensitivities.
     """
-    return _fitted([(residuals, state_beside(residuals, fit)) for fit, residuals in fits], predictions, tick)
+    return _fitted([(residuals, state_beside(residuals, fit, members)) for fit, residuals in fits], predictions, tick)
 
 
-def state_beside(residuals: Residuals, fit: FittedSet) -> FitState:
-    """The state of a fit beside a discrepancy, before its first step."""
+def state_beside(residuals: Residuals, fit: FittedSet, members: Members = ()) -> FitState:
+    """The state of a fit beside a discrepancy, before its first step.
+
+    ``members``: effects with amplitudes that join the set.
+    """
     known = set(fit.unknowns)
-    new = tuple(unknown for unknown in residuals.unknowns[: residuals.nuisance] if unknown not in known)
+    joining = (*residuals.unknowns[: residuals.nuisance], *(each for member in members for each in member.amplitudes))
+    new = tuple(unknown for unknown in joining if unknown not in known)
     linear = linear_about(residuals, fit, new)
     r = linear.data - linear.jacobian[:, : len(fit.unknowns)] @ fit.posterior.mean
-    return fit.state.beside(new, r, linear.jacobian)
+    return replace(fit.state, members=(*fit.members, *members)).beside(new, r, linear.jacobian)
 
 
 def _fitted(pairs: Sequence[tuple[Residuals, FitState]], predictions: Predictions, tick: Tick) -> list[FittedSet]:
@@ -260,15 +289,18 @@ def predictive(r: Array, covariance: Array) -> tuple[float, float]:
 def linear_about(residuals: Residuals, fit: FittedSet, unknowns: Sequence[Unknown]) -> LinearModel:
     """The linear model about a fit; the columns of further unknowns are those at x = 0.
 
-    A shared error of the residuals that the fit was made without is whitened, and their offset subtracted.
+    A shared error of the residuals that the fit was made without is whitened, in place of that of the fit; the offset
+    of the residuals is subtracted if the fit has neither.
     """
     columns = [residuals.unknowns.index(unknown) for unknown in unknowns]
     further = np.vstack([residuals.whitened[i][:, columns] for i in residuals.fitted])
     jacobian, data = fit.linear.jacobian, fit.linear.data
     if (shared := residuals.shared_error) is not None:
         further = shared.whitened(further)
-        if fit.shared_error is None:
-            if residuals.offset:
+        if fit.shared_error is not shared:
+            if fit.shared_error is not None:
+                jacobian, data = fit.shared_error.colored(jacobian), fit.shared_error.colored(data)
+            elif residuals.offset:
                 data = data - np.concatenate(
                     [residuals.runs[i].whitened(residuals.offset[i]) for i in residuals.fitted]
                 )

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from scipy.special import chdtrc
 
 from tyrefem.brief import Brief
-from tyrefem.diagnose.candidates import Members
+from tyrefem.diagnose.candidates import Candidate, Members
 from tyrefem.diagnose.evidence import Posterior, posterior
 from tyrefem.diagnose.linear_model import LinearModel
 from tyrefem.diagnose.settings import DiagnosisSettings
@@ -220,6 +220,20 @@ class FitState(Brief):
         )
         return further.proposed()
 
+    def without(self, members: Sequence[Candidate]) -> FitState:
+        """The state with effects left out that have amplitudes only: at the same point, predicted with J."""
+        left_out = {unknown for member in members for unknown in member.unknowns}
+        kept = np.array([unknown not in left_out for unknown in self.unknowns])
+        return replace(
+            self,
+            members=tuple(member for member in self.members if member not in members),
+            unknowns=tuple(unknown for unknown in self.unknowns if unknown not in left_out),
+            shapes=tuple(unknown for unknown in self.shapes if unknown not in left_out),
+            x=self.x[kept],
+            r=self.r + self.J[:, ~kept] @ self.x[~kept],
+            J=self.J[:, kept],
+        )
+
     def with_jacobian(self, J: Array) -> FitState:
         """The state after the tangents at x; ``J``: whitened (n, k)."""
         return replace(self, J=J, needs_tangents=False).proposed()
@@ -237,7 +251,7 @@ def initial_state(
     Parameters
     ----------
     linear : the linear model about x = 0. computed : number of the run -> block means there.
-    part : state of the fit of a subset.
+    part : state of the fit of a subset, or of the set itself.
     """
     design = linear.design
     taken = () if part is None else part.members

@@ -45,8 +45,9 @@ def beside_discrepancies(
     - *identified* stays if every member acts with at least 90 % probability, averaged over the discrepancy models by
       their probabilities. *confounded* stays unless the data exclude that effects alone are wrong (`NOT_EXCLUDED`).
     - *partly identified*: more is wrong than effects, and some act with at least 90 % probability beside every
-      discrepancy model, with amounts that agree; beside the most probable model noise explains the misfit, and they
-      predict the held-out runs no worse than no effect. Heat of unknown origin does not explain the data by itself.
+      discrepancy model, with amounts that agree; beside the most probable model noise explains the misfit, and the
+      held-out runs are predicted no worse with each of them than without it, and with all of them. Heat of unknown
+      origin does not explain the data by itself.
       They act in all runs, as the strain energy may differ from run to run, too.
     - *unexplained*: more is wrong, and there is no such effect.
 
@@ -71,9 +72,8 @@ def beside_discrepancies(
             revision = revision.doubted(asked_for)
         else:
             revision = revision._replace(reasons=(*revision.reasons, f"{asked_for}, but do not exclude effects alone"))
-    by_key = {member.key: member for fits in leading.fits for member in fits}
-    members = robustness.robust(by_key.values(), least)
-    for member in replace(robustness, laws=()).robust(by_key.values(), least):
+    members = robustness.robust(leading.effects, least)
+    for member in replace(robustness, laws=()).robust(leading.effects, least):
         if member not in members:
             law = min(robustness.counted, key=lambda law: law.named.get(member.key, 0.0))
             reason = f"{member.key} is not named: with {law.words} it is less probable, or of the other sign"
@@ -87,11 +87,17 @@ def beside_discrepancies(
             revision = revision._replace(reasons=(*revision.reasons, doubt))
         else:
             revision = revision.doubted(doubt)
-    if not members or len(members) > settings.largest:
+    if not members or len([member for member in members if member not in leading.allowed]) > settings.largest:
         return revision
-    if not _predicts_held_out(leading, members):
-        keys = " + ".join(member.key for member in members)
-        return revision.doubted(f"{keys} is not named: the held-out runs are predicted better without it")
+    held_out = tuple(member for member in members if _predicts_held_out(leading, (member,)))
+    if len(held_out) > 1 and not _predicts_held_out(leading, held_out):
+        held_out = ()
+    if held_out != members:
+        keys = " + ".join(member.key for member in members if member not in held_out)
+        doubt = f"{keys} is not named: the held-out runs are predicted better without it"
+        if not held_out:
+            return revision.doubted(doubt)
+        revision, members = revision._replace(reasons=(*revision.reasons, doubt)), held_out
     if heat is not None and heat.explains(settings.free_heat_lead):
         keys = " + ".join(member.key for member in members)
         doubt = f"{keys} is not named: heat of unknown origin explains the data about as well"
@@ -118,9 +124,7 @@ def _predicts_held_out(model: UnderDiscrepancy, members: Members) -> bool:
     """Whether the best fitted set with these effects predicts the held-out runs no worse than any set without one."""
     if all(math.isnan(fit.held_out) for fit in model.fits.values()):
         return True
-    wanted = set(members)
-    with_them = max((fit.held_out for part, fit in model.fits.items() if wanted <= set(part)), default=-math.inf)
-    without = max((fit.held_out for part, fit in model.fits.items() if not wanted <= set(part)), default=-math.inf)
+    with_them, without = model.held_out(members)
     return with_them >= without
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -12,7 +12,16 @@ from scipy.special import expit
 
 from tyrefem.brief import Brief
 from tyrefem.diagnose.candidates import Candidate, Members, separate
-from tyrefem.diagnose.discrepancy import ENERGY, HEAT, NONE, READINGS, Discrepancy, beside_law, discrepancies
+from tyrefem.diagnose.discrepancy import (
+    ENERGY,
+    HEAT,
+    NONE,
+    READINGS,
+    Discrepancy,
+    beside_law,
+    discrepancies,
+    without,
+)
 from tyrefem.diagnose.fits import FittedSet, continued, first_fits, fitted_beside, linear_about, state_beside
 from tyrefem.diagnose.gauss_newton import FitState, initial_state
 from tyrefem.diagnose.residuals import Residuals
@@ -37,11 +46,13 @@ class RankedBeside(Brief):
     """Sets beside one discrepancy model: those fitted beside it, and estimates ln(prior) + ln evidence of others.
 
     ``open``: effects that may be named; if there are any, of the sets with all of them only the best one is fitted.
+    ``left_out``: effects that do not compete.
     """
 
     problem: SelectionProblem
     discrepancy: Discrepancy
     open: Members = ()
+    left_out: Members = ()
     fits: dict[Members, FittedSet] = field(default_factory=dict)
     estimates: dict[Members, float] = field(default_factory=dict)
     _here: Residuals | None = None
@@ -58,7 +69,8 @@ class RankedBeside(Brief):
     def candidates(self) -> Members:
         """The effects that compete: those that the discrepancy does not allow for by itself."""
         further = set(self.discrepancy.further)
-        return tuple(each for each in self.problem.candidates if not further & set(each.unknowns))
+        competing = (each for each in self.problem.candidates if each not in self.left_out)
+        return tuple(each for each in competing if not further & set(each.unknowns))
 
     @functools.cached_property
     def _at_origin(self) -> Residuals:
@@ -106,8 +118,8 @@ class RankedBeside(Brief):
         computed = {number: residuals.computed[number] for number in residuals.fitted}
         origin = initial_state(linear, computed, (), residuals.settings)
         of_origin = problem.prior(()) + evidence(origin, residuals.log_det)
-        from_origin = of_origin > estimates[()]
-        estimates[()] = max(of_origin, estimates[()])
+        from_origin = of_origin > estimates.get((), -math.inf)
+        estimates[()] = max(of_origin, estimates.get((), -math.inf))
         ahead = sorted(estimates, key=lambda members: -estimates[members])
         near = [members for members in ahead if estimates[members] > estimates[ahead[0]] - FAR]
         chosen = self._deciding(near)[: most or residuals.settings.beside_sets]
@@ -123,7 +135,7 @@ class RankedBeside(Brief):
         )
         self._take(first_fits(residuals, problem.predictions, restarted, None, problem._count))
         self.estimates |= {members: value for members, value in estimates.items() if members not in self.fits}
-        if self.far:
+        if self.far and self._here is None:
             self._renew()
         self._estimate()
 
@@ -142,10 +154,12 @@ class RankedBeside(Brief):
         self._here = replace(self.residuals, sensitivities=sensitive)
 
     def further(self) -> None:
-        """Fit the best estimated sets, twice, and estimate from them."""
-        settings = self.problem.settings
-        for _ in range(2):
-            top = max(map(self.score, self.fits))
+        """Fit the best estimated sets and estimate from them: twice, and once more if a better one was found last."""
+        settings, top = self.problem.settings, -math.inf
+        for again in range(3):
+            before, top = top, max(map(self.score, self.fits))
+            if again == 2 and top == before:
+                return
             ahead = [
                 members
                 for members, value in sorted(self.estimates.items(), key=lambda item: -item[1])
@@ -173,9 +187,8 @@ class RankedBeside(Brief):
             self.estimates.pop(members, None)
 
     def _start(self, members: Members) -> FittedSet | None:
-        """The best fit of a part of a set."""
-        parts = [part for part in self.fits if set(part) < set(members)]
-        return self.fits[max(parts, key=self.score)] if parts else None
+        """The best fit of a part of a set; else the best one that has more effects, without these."""
+        return _nearest({part: fit for part, fit in self.fits.items() if part != members}, members, self.score)
 
     def _estimate(self) -> None:
         """Estimate sets with one effect more or less than a good fit, in the linear model about it."""
@@ -206,11 +219,11 @@ class RankedBeside(Brief):
         if members not in self.fits:
             self.estimates[members] = max(value, self.estimates.get(members, -math.inf))
 
-    def further_named(self) -> dict[str, float]:
-        """Candidate key -> probability of effects that the discrepancy allows for by itself, at the best fit.
+    def allowed(self) -> dict[Candidate, tuple[float, float, float]]:
+        """Effects that the discrepancy allows for by itself -> probability, x and its sd at the best fit.
 
         The odds that such an effect acts are its prior odds times the prior density over the posterior density of its
-        amplitude at zero (Dickey 1971).
+        amplitude at zero (Dickey 1971). x is linear, with the effect's sensitivities at zero.
         """
         of, fit = self.discrepancy, self.best
         shared = of.shared_error
@@ -218,12 +231,13 @@ class RankedBeside(Brief):
         if shared is None or not any(unknown in effects for unknown in of.further):
             return {}
         mean, sd = shared.coefficients(fit.state.r, fit.state.J, fit.state.posterior.covariance)
-        named = {}
-        for unknown, c, s in zip(of.further, mean, sd, strict=False):
+        allowed = {}
+        for unknown, c, s in zip(of.further, mean, np.maximum(sd, 1e-9), strict=False):
             if (candidate := effects.get(unknown)) is not None:
                 odds = self.problem.prior((candidate,)) - self.problem.prior(())
-                named[candidate.key] = float(expit(odds + math.log(max(s, 1e-9)) + (c / max(s, 1e-9)) ** 2 / 2))
-        return named
+                probability = float(expit(odds + math.log(s) + (c / s) ** 2 / 2))
+                allowed[candidate] = probability, float(c) * unknown.sd, float(s) * unknown.sd
+        return allowed
 
     def scored(self) -> list[ScoredSet]:
         """All sets, best first; estimates stay below the best fit."""
@@ -321,12 +335,34 @@ def robustness(
 
     first = result()
     if not explained:
-        return first
+        return _with_held_out(problem, first)
     probable = {model.name for model in first.models if model.probability > PROBABLE}
     unfinished = [beside for name, sizes in ranked.items() if name in probable or not certain for beside in sizes]
     for beside in unfinished:
         beside.further()
-    return result() if unfinished else first
+    last = result() if unfinished else first
+    return last if certain else _with_held_out(problem, last)
+
+
+def _with_held_out(problem: SelectionProblem, robust: Robustness) -> Robustness:
+    """With ln p of the held-out runs beside the most probable model without an effect that it allows for by itself.
+
+    For each such effect that acts with the probability of a name beside every model, the leading sets are ranked again
+    where neither the model nor a set has it.
+    """
+    leading = robust.models[0]
+    candidates = robust.robust(leading.allowed, problem.settings.named_probability)
+    if leading.discrepancy is None or leading.residuals is None or not candidates or not problem.residuals.held_out:
+        return robust
+    found = {}
+    for member in candidates:
+        left = without(leading.discrepancy, member.amplitudes)
+        here = replace(leading.residuals, shared_error=left.shared_error)
+        beside = RankedBeside(problem, left, left_out=(member,), _here=here)
+        beside.begin(leading.fits)
+        beside.further()
+        found[member.key] = max(fit.held_out for fit in beside.fits.values())
+    return replace(robust, models=(replace(leading, held_out_without=found), *robust.models[1:]))
 
 
 def _score(sizes: Sequence[RankedBeside]) -> float:
@@ -338,9 +374,17 @@ def _score(sizes: Sequence[RankedBeside]) -> float:
 def _under(sizes: Sequence[RankedBeside]) -> UnderDiscrepancy:
     """The sets beside a discrepancy of several sizes, and the effects that it allows for by itself."""
     model = under(*averaged(sizes))
-    further = next(each for each in sizes if each.discrepancy.size == model.size).further_named()
-    named = sorted({**model.named, **further}.items(), key=lambda item: -item[1])
-    return replace(model, named=dict(named))
+    beside = next(each for each in sizes if each.discrepancy.size == model.size)
+    allowed = beside.allowed()
+    named = {**model.named, **{each.key: probability for each, (probability, _, _) in allowed.items()}}
+    values = {each.amplitudes[0].key: (x, sd) for each, (_, x, sd) in allowed.items()}
+    return replace(
+        model,
+        named=dict(sorted(named.items(), key=lambda item: -item[1])),
+        values={**model.values, **values},
+        discrepancy=beside.discrepancy,
+        allowed=tuple(allowed),
+    )
 
 
 def _so_far(
@@ -393,8 +437,34 @@ def fit_beside(problem: SelectionProblem, model: UnderDiscrepancy, fit: FittedSe
     known = model.fits.get(problem.ordered(fit.members))
     if known is not None or model.residuals is None:
         return known or fit
-    (beside,) = fitted_beside(problem.predictions, [(fit, model.residuals)], problem._count)
+    members = tuple(member for member in fit.members if member in model.allowed)
+    others = problem.ordered(tuple(member for member in fit.members if member not in members))
+    start = _nearest(model.fits, others, lambda part: model.fits[part].log_evidence)
+    if model.discrepancy is None or start is None or not set(others) <= set(start.members):
+        (beside,) = fitted_beside(problem.predictions, [(fit, model.residuals)], problem._count)
+        return beside
+    # What is fitted as an effect is not allowed for a second time.
+    left = without(model.discrepancy, [member.amplitudes[0] for member in members])
+    here = replace(model.residuals, shared_error=left.shared_error)
+    (beside,) = fitted_beside(problem.predictions, [(start, here)], problem._count, members)
     return beside
+
+
+def _nearest(
+    fits: Mapping[Members, FittedSet], members: Members, score: Callable[[Members], float]
+) -> FittedSet | None:
+    """The fit of a set, else the best one of a part of it, else the best one with further effects, without these."""
+    if members in fits:
+        return fits[members]
+    if parts := [part for part in fits if set(part) < set(members)]:
+        return fits[max(parts, key=score)]
+    wholes = [whole for whole in fits if set(members) < set(whole)]
+    # Without an effect that has no amplitude all sensitivities are other ones.
+    wholes = [whole for whole in wholes if not any(each.presence for each in whole if each not in members)]
+    if not wholes:
+        return None
+    whole = fits[max(wholes, key=score)]
+    return whole.without([each for each in whole.members if each not in members])
 
 
 def _by_cost(

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from tyrefem.brief import Brief
 from tyrefem.diagnose.candidates import Candidate, Members
-from tyrefem.diagnose.discrepancy import NONE
+from tyrefem.diagnose.discrepancy import NONE, Discrepancy
 from tyrefem.diagnose.fits import FittedSet
 from tyrefem.diagnose.residuals import Residuals
 from tyrefem.diagnose.unknowns import Unknown
@@ -32,6 +32,9 @@ class UnderDiscrepancy(Brief):
     named : candidate key -> probability that it acts. best : the most probable set.
     values : key of an effect's unknown -> (x, sd) in the best fitted set that contains the effect.
     fits : set -> its fit beside the model. residuals : beside the model.
+    discrepancy : the model itself; None: none. allowed : effects that it allows for by itself; ``named`` and ``values``
+        have them, too. held_out_without : such an effect's key -> ln p of the held-out runs by the best set beside the
+        model without it, if that was worked out.
     """
 
     name: str
@@ -43,9 +46,29 @@ class UnderDiscrepancy(Brief):
     values: Mapping[str, tuple[float, float]]
     fits: Mapping[Members, FittedSet]
     residuals: Residuals | None = None
+    discrepancy: Discrepancy | None = None
+    allowed: Members = ()
+    held_out_without: Mapping[str, float] = field(default_factory=dict)
 
     def _title(self) -> str:
         return f"{self.name}: {self.probability:.3g}"
+
+    @property
+    def effects(self) -> Members:
+        """The effects of the fitted sets, and those that the model allows for by itself."""
+        by_key = {member.key: member for members in self.fits for member in members}
+        return tuple((by_key | {each.key: each for each in self.allowed}).values())
+
+    def held_out(self, members: Members) -> tuple[float, float]:
+        """ln p of the held-out runs by the best fitted set with all these effects, and by the best without one of them.
+
+        -infinity if there is none; NaN if no run is held out.
+        """
+        wanted = {member for member in members if member not in self.allowed}
+        with_them = [fit.held_out for part, fit in self.fits.items() if wanted <= set(part)]
+        without = [fit.held_out for part, fit in self.fits.items() if not wanted <= set(part)]
+        without += [self.held_out_without[member.key] for member in members if member.key in self.held_out_without]
+        return max(with_them, default=-math.inf), max(without, default=-math.inf)
 
     @property
     def p_value(self) -> float:

@@ -405,7 +405,9 @@ def rank(
     missing = with_course(missing_heat(residuals, origin.patches, alone), over_time)
     moved = movements(residuals, predictions, best_fit)
     leading = robust.models[0]
-    of_effects = supports(leading.residuals or residuals, best_fit, leading.fits, candidates, prior)
+    # Fits beside a model that allows for a member by itself do not tell what speaks for it.
+    comparable = {} if set(best_fit.members) & set(leading.allowed) else leading.fits
+    of_effects = supports(leading.residuals or residuals, best_fit, comparable, candidates, prior)
     return Ranking(judgement, best_fit, null, missing, fit_of, moved, robust, of_effects)
 
 
