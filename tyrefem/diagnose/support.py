@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -79,7 +79,8 @@ def supports(
     unknowns = [unknown for each in candidates for unknown in (*each.amplitudes, *each.presence)]
     wide = linear_about(residuals, best, unknowns)
     further = _colored(best.shared_error, wide.jacobian[:, len(best.unknowns) :])
-    for kind, name, kept in _groups(residuals):
+    for kind, name, rows_kept in _groups(residuals):
+        kept = _Kept(rows_kept)
         sets = {frozenset(members): share + rows.evidence(kept) for members, (share, rows) in models.items()}
         sets.setdefault(frozenset(best.members), prior(best.members) + about.evidence(kept))
         for member in best.members:
@@ -128,6 +129,20 @@ def _colored(shared: SharedError | None, rows: Array) -> Array:
     return rows if shared is None else shared.colored(rows)
 
 
+@dataclass(eq=False)
+class _Kept:
+    """The readings that are kept, and the errors that they share, worked out once for all fits beside one model."""
+
+    rows: Rows
+    errors: dict[SharedError, SharedError] = field(default_factory=dict)
+
+    def error(self, shared: SharedError) -> SharedError:
+        """A shared error of the kept readings alone."""
+        if shared not in self.errors:
+            self.errors[shared] = SharedError(shared.fitted[self.rows], np.zeros((0, shared.fitted.shape[1])))
+        return self.errors[shared]
+
+
 @dataclass(frozen=True, eq=False)
 class _Rows:
     """The linear model of a fit with its readings one by one: d = J x + C c + e; C: columns of a shared error."""
@@ -135,31 +150,27 @@ class _Rows:
     unknowns: tuple[Unknown, ...]
     J: Array
     d: Array
-    shared: Array | None
+    shared: SharedError | None
 
     @classmethod
     def of(cls, fit: FittedSet) -> _Rows:
         shared = fit.shared_error
         J, d = (_colored(shared, rows) for rows in (fit.linear.jacobian, fit.linear.data))
-        return cls(fit.unknowns, J, d, None if shared is None else shared.fitted)
+        return cls(fit.unknowns, J, d, shared)
 
     def without(self, unknowns: Sequence[Unknown]) -> _Rows:
         """With some unknowns at 0."""
         kept = [place for place, unknown in enumerate(self.unknowns) if unknown not in unknowns]
         return _Rows(tuple(self.unknowns[place] for place in kept), self.J[:, kept], self.d, self.shared)
 
-    def whitened(self, kept: Rows, rows: Array) -> Array:
+    def whitened(self, kept: _Kept, rows: Array) -> Array:
         """The kept rows, whitened."""
-        part = rows[kept]
-        return part if self.shared is None else self._error(kept).whitened(part)
+        part = rows[kept.rows]
+        return part if self.shared is None else kept.error(self.shared).whitened(part)
 
-    def _error(self, kept: Rows) -> SharedError:
-        assert self.shared is not None
-        return SharedError(self.shared[kept], np.zeros((0, self.shared.shape[1])))
-
-    def evidence(self, kept: Rows) -> float:
+    def evidence(self, kept: _Kept) -> float:
         """ln evidence of the kept readings."""
         J, d = self.whitened(kept, self.J), self.whitened(kept, self.d)
         sd, low, high = np.array([(each.sd, each.low, each.high) for each in self.unknowns]).reshape(-1, 3).T
-        log_det = 0.0 if self.shared is None else self._error(kept).log_det
+        log_det = 0.0 if self.shared is None else kept.error(self.shared).log_det
         return posterior(J.T @ J, J.T @ d, sd, low, high).log_evidence - float(d @ d) / 2 - log_det
