@@ -354,15 +354,15 @@ def _with_held_out(problem: SelectionProblem, robust: Robustness) -> Robustness:
     candidates = robust.robust(leading.allowed, problem.settings.named_probability)
     if leading.discrepancy is None or leading.residuals is None or not candidates or not problem.residuals.held_out:
         return robust
-    found = {}
+    held_out = {}
     for member in candidates:
         left = without(leading.discrepancy, member.amplitudes)
         here = replace(leading.residuals, shared_error=left.shared_error)
         beside = RankedBeside(problem, left, left_out=(member,), _here=here)
         beside.begin(leading.fits)
         beside.further()
-        found[member.key] = max(fit.held_out for fit in beside.fits.values())
-    return replace(robust, models=(replace(leading, held_out_without=found), *robust.models[1:]))
+        held_out[member.key] = max(fit.held_out for fit in beside.fits.values())
+    return replace(robust, models=(replace(leading, held_out_without=held_out), *robust.models[1:]))
 
 
 def _score(sizes: Sequence[RankedBeside]) -> float:
