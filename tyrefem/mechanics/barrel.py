@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -14,6 +15,7 @@ from tyrefem.cache import Cache
 from tyrefem.errors import InputError
 from tyrefem.mechanics.finite_elements import GaussPoints, PointEnergies
 from tyrefem.mechanics.footprint.pressed_tyre import pressed_tyre
+from tyrefem.mechanics.solid.cylinder import CylinderChoice
 from tyrefem.mechanics.strain_cycle import StrainCycle, Zone
 
 if TYPE_CHECKING:
@@ -23,8 +25,12 @@ if TYPE_CHECKING:
     from tyrefem.mechanics.solid.inflation import Inflation
 
 Array = NDArray[np.float64]
+#: Pressures and deflections are solved from powers of this factor near by; the accuracy to which those are solved.
+NEAR, ROUGH = 1.05, CylinderChoice(tolerance=1e-3)
 #: Tyres in the cylinder by inflated tyre, deflection and start; studies with the same inflated tyre share them.
 _FLATTENED: Cache[Flattened] = Cache(size=32)
+#: The same at rounded pressures and deflections.
+_ROUGH: Cache[Flattened] = Cache(size=32)
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,11 +78,16 @@ class Barrel:
         return self.energies.energy_density(zone, points)
 
 
+def _rounded(value: float) -> float:
+    """The next lower power of `NEAR`: pressing further is easier than letting go."""
+    return float(NEAR ** math.floor(math.log(value) / math.log(NEAR)))
+
+
 def provider(study: StudyData) -> Callable[[LoadCase], StrainCycle]:
     """A function from load case to strain cycle, for ``mechanics.strain = "barrel"``.
 
-    The tyre is inflated once for every pressure. Each deflection starts from the next smaller deflection already
-    solved.
+    Every deflection starts from rounded values of pressure and deflection (`NEAR`), which variants of a study share.
+    These are pressed in steps, not to full accuracy, from the next smaller deflection already solved.
 
     Raises
     ------
@@ -87,14 +98,22 @@ def provider(study: StudyData) -> Callable[[LoadCase], StrainCycle]:
     solved: dict[float, list[Flattened]] = {}
     inflated = pressed_tyre(study).inflated
 
+    def rough(pressure: float, deflection: float) -> Flattened | None:
+        """The tyre at rounded values; None if it cannot take them."""
+        try:
+            tyre, known = inflated(pressure), solved.setdefault(pressure, [])
+            less = [state for state in known if state.deflection <= deflection]
+            start = max(less, key=lambda state: state.deflection, default=None)
+            known.append(_ROUGH.get((tyre, deflection, start), lambda: flatten(tyre, deflection, start, ROUGH)))
+        except InputError:
+            return None
+        return known[-1]
+
     def flattened(pressure: float, deflection: float) -> Flattened | None:
         if deflection <= 0:
             return None
-        tyre, known = inflated(pressure), solved.setdefault(pressure, [])
-        less = [state for state in known if state.deflection <= deflection]
-        start = max(less, key=lambda state: state.deflection, default=None)
-        known.append(_FLATTENED.get((tyre, deflection, start), lambda: flatten(tyre, deflection, start)))
-        return known[-1]
+        tyre, near = inflated(pressure), rough(_rounded(pressure), _rounded(deflection))
+        return _FLATTENED.get((tyre, deflection, near), lambda: flatten(tyre, deflection, near=near))
 
     def cycle(case: LoadCase) -> StrainCycle:
         try:

@@ -126,6 +126,7 @@ def flatten(
     start: Flattened | None = None,
     choice: CylinderChoice | None = None,
     touching: str = "road",
+    near: Flattened | None = None,
 ) -> Flattened:
     """Press an inflated body inside a rigid frictionless cylinder; the gas pressure stays constant.
 
@@ -135,7 +136,8 @@ def flatten(
 
     Parameters
     ----------
-    deflection : D, m, from the inflated free tyre. start : the same tyre at a smaller deflection.
+    deflection : D, m, from the inflated free tyre. start : the same tyre at a smaller deflection. near : the same body
+        at another pressure and a smaller deflection, to start from if it is in equilibrium at this pressure, too.
 
     Raises
     ------
@@ -160,6 +162,15 @@ def flatten(
     nodes = tyre.body.rings.boundary_nodes(touching)
     now = start or Flattened(tyre, 0.0, tyre.displacement, np.zeros(len(nodes)), touching)
     before, free = now, reach(tyre, touching)
+    if near is not None and 0 < free - near.radius <= deflection:
+        try:
+            displacement, forces, history = equilibrium_inside(
+                tyre.body, tyre.pressure, nodes, near.displacement, near.forces, near.radius, choice
+            )
+            now = Flattened(tyre, free - near.radius, displacement, forces, touching, residuals=(history,))
+            before = now
+        except StuckError:
+            pass
     step = choice.first_step * free
     steps, residuals = list(now.steps), list(now.residuals)
     while now.deflection < deflection:
