@@ -433,21 +433,34 @@ def beside_strain_laws(problem: SelectionProblem, robust: Robustness, fits: Sequ
 
 
 def fit_beside(problem: SelectionProblem, model: UnderDiscrepancy, fit: FittedSet) -> FittedSet:
-    """The fit of a set beside a model; ``fit``: its fit without a discrepancy."""
+    """The fit of a set beside a model; ``fit``: its fit without a discrepancy.
+
+    It is continued with new sensitivities if it has not converged and noise does not explain its misfit. Effects that
+    the model allows for by itself are fitted as effects, and not allowed for a second time.
+    """
     known = model.fits.get(problem.ordered(fit.members))
-    if known is not None or model.residuals is None:
+    if model.residuals is None or (known is not None and _good(known)):
         return known or fit
     members = tuple(member for member in fit.members if member in model.allowed)
     others = problem.ordered(tuple(member for member in fit.members if member not in members))
     start = _nearest(model.fits, others, lambda part: model.fits[part].log_evidence)
+    here, joining, predictions = model.residuals, members, problem.predictions
     if model.discrepancy is None or start is None or not set(others) <= set(start.members):
-        (beside,) = fitted_beside(problem.predictions, [(fit, model.residuals)], problem._count)
-        return beside
-    # What is fitted as an effect is not allowed for a second time.
-    left = without(model.discrepancy, [member.amplitudes[0] for member in members])
-    here = replace(model.residuals, shared_error=left.shared_error)
-    (beside,) = fitted_beside(problem.predictions, [(start, here)], problem._count, members)
-    return beside
+        start, joining = fit, ()
+    elif members:
+        left = without(model.discrepancy, [member.amplitudes[0] for member in members])
+        here = replace(here, shared_error=left.shared_error)
+    first = known
+    if first is None:
+        (first,) = fitted_beside(predictions, [(start, here)], problem._count, joining)
+    if _good(first) or not first.worth_continuing:
+        return first
+    (further,) = continued(here, predictions, [first], problem._count)
+    return max(first, further, key=lambda each: each.log_evidence)
+
+
+def _good(fit: FittedSet) -> bool:
+    return fit.converged or fit.p_value > USUAL_P
 
 
 def _nearest(
