@@ -12,7 +12,7 @@ import typer.main
 from tyrefem.cli import app
 from tyrefem.schemas.answer_schema import parts_of, unit_of
 from tyrefem.schemas.answers import ANSWERS, Keys
-from tyrefem.schemas.rows import ROWS
+from tyrefem.schemas.rows import rows_of
 
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "commands.md"
 #: Options of every command: the table at the top of the page.
@@ -45,8 +45,8 @@ def tables() -> str:
             if answer.partition(" (")[0].partition(" --")[0] == name:
                 lines += ["", f"Answer of `{answer}`:", "", "| key | kind | meaning |", "|---|---|---|"]
                 lines += [_row(key, line) for key, line in keys.items() if key != "*"]
-                lines += [text for place, row in ROWS.items() if place.partition(".")[0] == answer
-                          for text in ("", inside(place.partition(".")[2], row))]  # fmt: skip
+                lines += [text for place, row in rows_of(answer).items() if place != "plugins[]"
+                          for text in ("", inside(place, row))]  # fmt: skip
     return "\n".join(lines)
 
 

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import pytest
 import small
@@ -15,9 +13,8 @@ from jsonschema.exceptions import best_match
 
 from tyrefem.cli import main
 from tyrefem.contracts import template
-from tyrefem.schemas.answer_schema import answer_of, answers_schema, name_of, steps_of
+from tyrefem.schemas.answer_schema import answer_of, answers_schema, unknown_keys
 from tyrefem.schemas.answers import ANSWERS
-from tyrefem.schemas.rows import rows_of
 
 SCHEMA = answers_schema()
 #: Commands that take seconds; the others are tried here too, with ``--json`` alone.
@@ -34,25 +31,8 @@ def checked(command: str, text: str) -> None:
                 for name in names]  # fmt: skip
     assert None in problems, [problem.message for problem in problems if problem]
     definition = names[problems.index(None)]
-    name = next(name for name in ANSWERS if name_of(name) == definition)
-    for place, keys in rows_of(name).items():
-        if "*" not in keys:
-            there = {key for row in inside(data, steps_of(place)) for key in row}
-            assert there <= {key.removesuffix("*") for key in keys}, f"{name}: keys of {place} without words"
-
-
-def inside(data: Any, steps: list[tuple[str, str]]) -> Iterator[dict[str, Any]]:
-    """The tables at a place of an answer."""
-    if data is None:
-        return
-    if not steps:
-        yield data
-        return
-    (name, ending), *rest = steps
-    below = data.get(name) if name else data
-    several = {"[]": list, "{}": dict.values}.get(ending, lambda each: [each])
-    for each in several(below) if below is not None else []:
-        yield from inside(each, rest)
+    without_words = sorted(set(unknown_keys(data, SCHEMA["definitions"][definition])))
+    assert without_words == [], f"{definition}: keys without words in tyrefem/schemas"
 
 
 @pytest.mark.parametrize("command", commands(), ids=lambda command: command.name)
@@ -110,6 +90,33 @@ def test_other_questions_to_a_command_are_documented_too(here: Path, capfd: pyte
     (here / "campaign.toml").write_text('cases = "cases.csv"\n' + text, encoding="utf-8")
     assert main(["run", "campaign.toml", "--out", "cases", "--json", "--no-pictures", "--no-vtk"]) == 0
     checked("run", capfd.readouterr().out)
+
+
+def test_all_questions_of_a_sweep_and_all_of_a_run_are_documented(
+    here: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    vary = ["--vary", "drive.speed=10 mph:20 mph", "--vary", "materials.tread.loss_tangent.value=x0.8:x1.2"]
+    asked = ["--indices", "4", "--tornado", "--envelope", "hottest_degC<90"]
+    assert main(["sweep", "study.toml", *vary, *asked, "--out", "asked", "--json"]) == 0
+    checked("sweep", capfd.readouterr().out)
+    vary = ["--vary", "drive.speed=10 mph:20 mph:2", "--vary", "drive.load=2500 lbf:3000 lbf:2"]
+    asked = ["--minimise", "hottest_degC", "--limit", "rolling_resistance_N<500"]
+    assert main(["sweep", "study.toml", *vary, *asked, "--out", "best", "--json"]) == 0
+    checked("sweep", capfd.readouterr().out)
+    changes = [
+        "mechanics.strain=fem",
+        "mechanics.motion=linear",
+        "mechanics.feedback.pressure=true",
+        "drive.slip_ratio=5 %",
+    ]
+    flags = [word for change in changes for word in ("--set", change)]
+    assert main(["run", "study.toml", *flags, "--out", "warm", "--json", "--no-pictures", "--no-vtk"]) == 0
+    out = capfd.readouterr().out
+    assert {"feedback", "sliding", "footprint"} <= set(json.loads(out))
+    checked("run", out)
+    for what in (["mesh", "study.toml"], ["strain", "study.toml"], ["effect", "sun"], ["sweep", "crown-angle"]):
+        assert main(["show", *what, "--json"]) == 0
+        checked("show", capfd.readouterr().out)
 
 
 def test_every_command_lists_the_plugins_that_take_part(

@@ -1,88 +1,99 @@
 """Every command in the documentation runs: as it stands where it is quick, else on a coarse mesh, or a test is named.
 
 `COARSE` says what is added to make a command short, `ELSEWHERE` which commands are not run here, and why.
+`tools/run_docs_commands.py` runs them all, page by page as they stand, but for those in `tools/docs_commands.toml`.
 """
 
 from __future__ import annotations
 
 import re
 import shlex
+import shutil
+from collections.abc import Iterator
+from itertools import groupby
 from pathlib import Path
 
 import pytest
-from test_docs_pages import PAGES, ROOT, shell_commands, tyrefem_arguments
+from docs_commands import Exceptions, commands, lines, pages, plain, split
+from run_docs_commands import Outcome, outcomes
+from test_docs_pages import ROOT, tyrefem_arguments
 
 from tyrefem.cli import main
 
-TEXTS = [
-    *PAGES, ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted(ROOT.glob("studies/*/README.md")),
-    *sorted((ROOT / "site").glob("*.md")), *sorted((ROOT / "site" / "howto").glob("*.md")),
-]  # fmt: skip
-#: Commands that stand as an indented line.
-INDENTED = re.compile(r"^    ((?:tyrefem|python) .+)$", re.MULTILINE)
 #: Words of a study's name -> what makes its mechanics and its run short.
 COARSE = {
     "nasa-": ["--set", "mesh.size=14 mm"],
-    "example-validation": ["--set", "mesh.size=14 mm"],
+    "example-": ["--set", "mesh.size=14 mm"],
     "passenger-": ["--set", "mesh.size=18 mm", "--set", "mechanics.motion=linear"],
+    "studies/passenger-": ["--set", "mesh.size=18 mm", "--set", "mechanics.motion=linear"],
 }
 #: Commands that take a study and ``--set``.
-OF_STUDY = {"run", "press", "modes", "strain", "compare", "wear", "life", "sweep"}
+OF_STUDY = {"run", "press", "modes", "strain", "compare", "wear", "life", "sweep", "explore", "export"}
+#: Begin of a command -> what else makes it short.
+MORE = {
+    "tyrefem explore": ["--tolerance", "10 K"],
+    "tyrefem explore nasa-22x5.5-8pr --set": ["--vary", "drive.speed=15 mph:20 mph"],
+    "tyrefem export": ["--tolerance", "50 K", "--workers", "1"],
+    "tyrefem rig layers": ["--most", "1"],
+}
+#: Command -> commands that come before it on its page.
+FIRST = {
+    "tyrefem check studies/my-tyre": ["tyrefem new study my-tyre"],
+    "tyrefem check plugins/arrhenius.py": ["tyrefem new tan-delta-law arrhenius"],
+    "tyrefem run studies/passenger-225-45r17": ["tyrefem new tyre 225/45R17 --from passenger-205-55r16"],
+}
+#: Command -> files of the repository that its page has, here by the names of the page.
+FILES = {
+    "tyrefem check my-sweep.toml": {"my-sweep.toml": "studies/crown-angle/sweep.toml"},
+    "tyrefem thermal-card studies/thermal-passenger": {"studies/thermal-passenger": "studies/thermal-passenger"},
+}
 #: Pattern of a command -> why it is not run here.
 ELSEWHERE = {
-    r"(\.venv/bin/)?(python3|pip|ruff|lint-imports|mypy|pytest|\.) ?.*": ".ci/run installs, lints and tests",
-    r"(\.venv/bin/)?python (benchmarks|tools)/.*": "makes tables and pictures of a page: minutes to hours",
-    r"python site/build\.py.*": ".ci/run builds the site",
-    r"python -c .*": "prints a help text",
-    r"(export|paraview|pvpython) .*": "of the shell; of ParaView, which is no dependency",
-    r"tyrefem explore .*": "a minute: tests/explore",
-    r"tyrefem (new tan-delta-law|check plugins/|list tan-delta-laws).*": "tests/plugins/test_extending_page.py",
-    r"tyrefem (run studies/passenger-225.*|thermal-card .*)": "follow other commands: tests/sizes, tests/lumped",
+    r"(\.venv/bin/)?python (benchmarks|tools)/.*": "makes tables and pictures of a page: minutes",
+    r"python3? -c .*": "prints a help text, or reads the answer of another command",
+    r"export .*": "of the shell",
+    r"tyrefem explore nasa-22x5\.5-8pr": "the whole box: tests/explore",
     r"tyrefem show strain passenger.*": "ten seconds: tests/strain/test_strain_by_region.py",
-    r"dask .*": "starts a cluster: tests/plugins/test_plugins_elsewhere.py has one",
-    r".* tcp://.*": "needs a cluster: tests/plugins/test_plugins_elsewhere.py has one",
-    r"tyrefem \w+ (identify )?my-.*": "names files of the reader",
+    r"tyrefem \w+ (identify )?my-(study|rig).*": "names files of the reader",
     r"tyrefem (diagnose|isolability|plan|blind) .*": "half a minute and more: site/gallery, tests/diagnose, tests/plan",
-    r"tyrefem compare (example-structural|first/).*": "follows a diagnosis: tests/compare, tests/diagnose",
+    r"tyrefem compare first/.*": "follows a diagnosis: tests/compare, tests/diagnose",
     r"tyrefem (roll|forces) .*": "a minute: tests/cli/test_roll_command.py, tests/cli/test_forces_command.py",
     r"tyrefem press .*(--critical-speed|rolling=true).*": "minutes: tests/cli/test_critical_speed.py, tests/rolling",
     r"tyrefem press .*(--camber|--drum).*": "a full section in large motion: tests/cli/test_press_command.py",
-    r"tyrefem rig (identify|layers) .*": "half a minute: tests/rig",
-    r"tyrefem export .*": "half a minute: tests/realtime, site/gallery",
+    r"tyrefem rig identify .*": "half a minute: tests/rig",
     r"tyrefem sweep .*(--tornado|--indices|--count|output\.life|--minimise|crown-angle).*": "minutes: tests/sweep",
     r"tyrefem sweep .*--link .*": "a radial for every variant: tests/sweep",
     r"tyrefem sweep .* --workers 4": "the same sweep as of docs/sweeps.md, which runs here",
     r"tyrefem run (nasa-campaign|aircraft-sizes)": "many cases: tests/campaign, tests/sizes",
     r"tyrefem run .*boundaries\.sliding=rolling.*": "a minute: tests/sliding/test_rolling_drive.py",
-    r"tyrefem run nasa-taxi-takeoff --set mechanics\.feedback.*": "half a minute: tests/feedback",
     r"tyrefem run .*rig-trtlab-identified.*": "takes the cards of an identification: tests/rig",
-    r"tyrefem run .*mesh\.size=0\.11 mm.*": "is refused, as its page says: tests/estimate",
     r"tyrefem (run|press) (aircraft-radial|truck-|measured-).*": "half a minute: tests/studies, tests/sizes",
     r"tyrefem wear .*": "a minute: tests/wear, site/gallery",
     r"tyrefem life (?!.*--no-sensitivity).*": "five runs: tests/cli/test_life_command.py",
     r"tyrefem .*--out results/first": "the ring of 60 MB: tests/output, site/gallery",
 }
+EXCEPTIONS = Exceptions.read()
 
 
-def commands() -> list[str]:
-    """Every command of the documentation, once."""
-    lines: dict[str, None] = {}
-    for page in TEXTS:
-        text = re.sub(r"^```.*?^```", "", page.read_text(encoding="utf-8"), flags=re.DOTALL | re.MULTILINE)
-        indented = [shlex.split(line, comments=True) for line in INDENTED.findall(text.replace("\\\n", " "))]
-        for words in [*shell_commands(page), *indented]:
-            arguments = tyrefem_arguments(words)
-            lines[shlex.join(words if arguments is None else ["tyrefem", *arguments])] = None
-    return list(lines)
+def every_command() -> Iterator[str]:
+    """Every command of the documentation; parts of a pipe one by one."""
+    for page in pages():
+        for command in commands(page):
+            for between, part in groupby(shlex.split(command), "|".__eq__):
+                words = list(part)
+                arguments = None if between else tyrefem_arguments(words)
+                if not between:
+                    yield shlex.join(words if arguments is None else ["tyrefem", *arguments])
 
 
-COMMANDS = commands()
+COMMANDS = list(dict.fromkeys(every_command()))
 
 
 def why_elsewhere(command: str) -> str | None:
     """The reason why a command is not run here, if there is one."""
-    plain = " ".join(shlex.split(command))
-    return next((reason for pattern, reason in ELSEWHERE.items() if re.fullmatch(pattern, plain)), None)
+    reasons = {pattern: reason for pattern, (_, reason) in EXCEPTIONS.ends_with.items()} | ELSEWHERE
+    matching = (reason for pattern, reason in reasons.items() if re.fullmatch(pattern, plain(command)))
+    return EXCEPTIONS.why_left_out(command) or next(matching, None)
 
 
 def without_place(command: str) -> tuple[str, ...]:
@@ -103,24 +114,67 @@ def short(command: str) -> list[str]:
     if arguments[0] in OF_STUDY:
         more += next((flags for name, flags in COARSE.items() if arguments[1].startswith(name)), [])
         more += [flag for flag in ("--no-pictures", "--no-vtk") if flag not in arguments and arguments[0] == "run"]
-    if arguments[0] in ("compare", "sweep") and "--workers" not in arguments:
+    for begin, flags in MORE.items():
+        more += flags if command.startswith(begin) and flags[0] not in arguments else []
+    if arguments[0] in ("compare", "sweep", "explore") and "--workers" not in arguments:
         more += ["--workers", "1"]
     return [*arguments, *more]
 
 
 @pytest.mark.fast
 def test_every_command_is_one_of_tyrefem_or_has_a_reason() -> None:
-    assert len(COMMANDS) > 100
-    assert len(HERE) > 40
+    assert len(COMMANDS) > 190
+    assert len(HERE) > 65
     assert [command for command in HERE if not command.startswith("tyrefem ")] == []
 
 
 @pytest.mark.fast
 def test_every_reason_is_needed_and_names_what_there_is() -> None:
-    named = {name for reason in ELSEWHERE.values() for name in re.findall(r"(?:tests|site)/[\w./]*\w", reason)}
+    reasons = [*ELSEWHERE.values(), *EXCEPTIONS.left_out.values()]
+    named = {name for reason in reasons for name in re.findall(r"(?:tests|site)/[\w./]*\w", reason)}
     assert [name for name in named if not (ROOT / name).exists()] == []
-    plain = [" ".join(shlex.split(command)) for command in COMMANDS]
-    assert [pattern for pattern in ELSEWHERE if not any(re.fullmatch(pattern, command) for command in plain)] == []
+    every = {plain(command) for page in pages() for command in commands(page)} | {plain(each) for each in COMMANDS}
+    patterns = [*ELSEWHERE, *EXCEPTIONS.patterns()]
+    assert [pattern for pattern in patterns if not any(re.fullmatch(pattern, command) for command in every)] == []
+    assert {name for name in EXCEPTIONS.before if not (ROOT / name).is_file()} == set()
+
+
+@pytest.mark.fast
+def test_commands_are_read_as_a_shell_reads_them() -> None:
+    line = "tyrefem a --set x='1; 2' && tyrefem b | jq .c; export D=$PWD/d     # not; this"
+    assert split(line) == ["tyrefem a --set x='1; 2'", "tyrefem b | jq .c", "export D=$PWD/d"]
+    page = ROOT / "docs" / "rig.md"
+    assert len(lines(page)) == 5
+    assert commands(page)[-1].startswith("tyrefem run nasa-22x5.5-8pr --set materials.tread=results/")
+
+
+@pytest.fixture
+def shown(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, Outcome]:
+    """The outcomes of a page's commands by the tool that runs whole pages."""
+    monkeypatch.setattr("run_docs_commands.ROOT", tmp_path)
+    monkeypatch.setattr("run_docs_commands.copied", lambda folder: (folder / "there.txt").write_text("4"))
+    page = tmp_path / "page.md"
+    page.write_text(
+        "```sh\nexport NAME=made && mkdir $NAME   # kept for the page\ntest -d made; cat there.txt first.txt | grep 4\n"
+        "exit 2\nfalse\nsleep 9\npip install all\nlong way\n```\n"
+    )
+    exceptions = Exceptions(
+        {"pip .*": "installs"}, {"long .*": ("echo short", "long")}, {"exit 2": (2, "as it says")},
+        {"page.md": ["echo 4 > first.txt"]},
+    )  # fmt: skip
+    return {outcome.command: outcome for outcome in outcomes(page, exceptions, longest=1.0)}
+
+
+@pytest.mark.fast
+def test_commands_of_a_page_run_one_after_the_other_in_one_folder(shown: dict[str, Outcome]) -> None:
+    words = {command: (outcome.word, outcome.code) for command, outcome in shown.items()}
+    assert words == {
+        "mkdir $NAME": ("ok", 0), "test -d made": ("ok", 0), "cat there.txt first.txt | grep 4": ("ok", 0),
+        "exit 2": ("ok", 2), "false": ("FAILED", 1), "sleep 9": ("too long", None),
+        "pip install all   [installs]": ("left out", None), "echo short": ("shorter", 0),
+    }  # fmt: skip
+    assert [command for command, outcome in shown.items() if outcome.failed] == ["false", "sleep 9"]
+    assert 1.0 <= shown["sleep 9"].seconds < 5.0
 
 
 @pytest.mark.parametrize("command", HERE)
@@ -128,6 +182,10 @@ def test_a_command_of_the_documentation_runs(
     command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    if command == "tyrefem check studies/my-tyre":
-        assert main(["new", "study", "my-tyre"]) == 0
+    for name, file in FILES.get(command, {}).items():
+        place = tmp_path / name
+        place.parent.mkdir(parents=True, exist_ok=True)
+        (shutil.copytree if (ROOT / file).is_dir() else shutil.copy)(ROOT / file, place)
+    for first in FIRST.get(command, []):
+        assert main(shlex.split(first)[1:]) == 0
     assert main(short(command)) == 0, capfd.readouterr().err[-1000:]

@@ -6,8 +6,9 @@ import make_commands_page
 import pytest
 from jsonschema import Draft7Validator
 
-from tyrefem.schemas.answer_schema import TYPES, answer_schema, parts_of, steps_of
+from tyrefem.schemas.answer_schema import TYPES, answer_schema, parts_of, steps_of, unknown_keys
 from tyrefem.schemas.answers import ANSWERS
+from tyrefem.schemas.inner_rows import COMMON, INNER
 from tyrefem.schemas.rows import ROWS, rows_of
 
 pytestmark = pytest.mark.fast
@@ -20,7 +21,8 @@ def test_the_page_is_up_to_date() -> None:
 
 
 def test_every_line_has_a_kind_and_words() -> None:
-    for command, keys in [*ANSWERS.items(), *ROWS.items()]:
+    common = [row for rows in COMMON.values() for row in rows.items()]
+    for command, keys in [*ANSWERS.items(), *ROWS.items(), *INNER.items(), *common]:
         for key, line in keys.items():
             kind, _, words = parts_of(line)
             assert kind in (*TYPES, "any"), (command, key)
@@ -28,7 +30,8 @@ def test_every_line_has_a_kind_and_words() -> None:
 
 
 def test_every_row_belongs_to_a_key_of_a_command() -> None:
-    for place in ROWS:
+    assert not set(ROWS) & set(INNER)
+    for place in [*ROWS, *INNER]:
         command, _, inside = place.partition(".")
         assert command in ANSWERS, place
         name, ending = steps_of(inside)[0]
@@ -49,3 +52,21 @@ def test_rows_behind_names_are_checked_too() -> None:
     schema = Draft7Validator({**answer_schema("run"), "required": []})
     assert schema.is_valid({"sensors": {"crown": {"end_degC": 70.0, "max_degC": 70.0}}})
     assert not schema.is_valid({"sensors": {"crown": {"end_degC": 70.0}}})
+
+
+def test_a_key_without_words_is_seen_at_any_depth() -> None:
+    schema = answer_schema("wear")
+    phase = {"name": "a", "distance_m": 1.0, "friction_work_J": 2.0, "mean_wear_mm_per_1000_km": 0.1}
+    assert list(unknown_keys({"phases": [phase], "versions": {"numpy": "2.0"}}, schema)) == []
+    assert list(unknown_keys({"phases": [{**phase, "mood": 1}]}, schema)) == [".phases[].mood"]
+    # Names with a value each: no tables behind them.
+    assert list(unknown_keys({"versions": {"numpy": {"major": 2}}}, schema)) == [".versions{} ['major']"]
+    # A file of the user's stands as it was written.
+    assert list(unknown_keys({"card": {"depth": {"any": 1}}}, schema)) == []
+
+
+def test_deep_keys_of_a_diagnosis_are_in_the_schema() -> None:
+    schema = answer_schema("diagnose")
+    law = schema["properties"]["missing_heat"]["properties"]["law"]["properties"]
+    assert law["exponents"]["items"]["properties"]["mean"]["description"] == "Exponent."
+    assert law["switch_probabilities"]["additionalProperties"] == {"not": {"type": "object"}}

@@ -14,15 +14,17 @@ from tyrefem.brief import Brief
 from tyrefem.errors import InputError, nearest
 from tyrefem.estimates.work import warn_if_long
 from tyrefem.inputs.study import StudyData
+from tyrefem.mechanics.strain_laws import strain_law
 from tyrefem.realtime.box_certificate import BoxCertificate, certified, is_temperature
 from tyrefem.realtime.box_runs import SettingTask, outcomes, perform_history, perform_skin
 from tyrefem.realtime.default_box import default_box
 from tyrefem.realtime.drive_inputs import DriveInputs, drive_inputs
+from tyrefem.realtime.few_presses import few_presses, shared_pairs
 from tyrefem.realtime.number_factors import PartsProbe, number_factors, product_errors
 from tyrefem.realtime.setting_arrays import rounded, setting_arrays, step_arrays
 from tyrefem.realtime.setting_solution import Solution
 from tyrefem.realtime.setting_tyre import SettingTyre
-from tyrefem.realtime.settings import TablePoints
+from tyrefem.realtime.settings import FEWEST, TablePoints
 from tyrefem.realtime.tables import Probe
 from tyrefem.realtime.tyre import STANDSTILL
 from tyrefem.reduced.model import NotReducibleError, ReducedModel
@@ -31,7 +33,6 @@ from tyrefem.reduced.training import ReducedFineness, trained
 from tyrefem.reduced.training_rounds import Training
 from tyrefem.requirements import Requirements
 from tyrefem.simulation.estimate import RunEstimate
-from tyrefem.simulation.rolling_tyre import RollingTyre
 from tyrefem.variants.plan import Plan, plan_of
 from tyrefem.variants.samples import changes_at
 from tyrefem.variants.schedulers import Here, Local, Scheduler
@@ -176,14 +177,17 @@ def box_model(
     rng = np.random.default_rng(1000 + seed)
     count = len(plan.varied)
     ends = [np.zeros(count), np.ones(count)]
+    few = few_presses(plan, rng) if strain_law(plan.study).by_elements else None
+    if few is not None:
+        training.repeated = few.repeated
     training.run(ends, TRAINING_FACTOR * max(tolerance, LEAST_RUN_TOLERANCE), "training", with_answers=False)
-    corners = [*ends, *np.round(rng.random((SKINS, count)))]
+    corners = [*ends, *training.repeated(list(np.round(rng.random((SKINS, count)))))]
     tasks = [SettingTask(plan.packed, training.variant(place)) for place in corners]
     training.snapshots += outcomes(scheduler, perform_skin, tasks, lambda done, total: report("skins", done, total))
-    report("tables", 0, 1)
-    tables = _Tables(plan, inputs, training.base, points)
-    report("tables", 1, 1)
+    tables = _Tables(training, inputs, points or (None if few is None else FEWEST), few is not None)
     for trial in range(TRIALS):
+        if trial and few is not None and points is None:
+            tables = _Tables(training, inputs, None, True)
         training.correction_rounds(1 if trial else ROUNDS, MODES_SHARES[1] * tolerance)
         places = [*rng.random((INSIDE, count)), *np.round(rng.random((CORNERS, count)))]
         fresh = outcomes(
@@ -262,13 +266,23 @@ def _numbers(plan: Plan, place: Sequence[float] | Array) -> Array:
 
 
 class _Tables:
-    """What a box's models have in common: tables of films and strain energy, and the study in the middle."""
+    """What a box's models have in common: tables of films and strain energy, and the study in the middle.
 
-    def __init__(self, plan: Plan, inputs: DriveInputs, base: RollingTyre, points: TablePoints | None) -> None:
-        self.plan, self.inputs = plan, inputs
-        self.middle = plan.study.replace(changes_at(plan.varied, [0.5] * len(plan.varied)))
-        self.probe = Probe(self.middle, inputs.box(), base, points)
-        self.tables = self.probe.tables()
+    ``costly``: the workers solve the load cases of the tables.
+    """
+
+    def __init__(self, training: Training, inputs: DriveInputs, points: TablePoints | None, costly: bool) -> None:
+        self.plan, self.inputs = training.plan, inputs
+        report = training.report
+        report("tables", 0, 1)
+        changes = changes_at(self.plan.varied, [0.5] * len(self.plan.varied))
+        self.middle = self.plan.study.replace(changes)
+        self.probe = Probe(self.middle, inputs.box(), training.base, points)
+        shared = shared_pairs(
+            training.scheduler, self.plan.packed, changes, inputs.box(), functools.partial(report, "tables")
+        )
+        self.tables = self.probe.tables(shared if costly else None)
+        report("tables", 1, 1)
         phases = inputs.at((inputs.low + inputs.high) / 2)[0]
         self.stands = bool((phases[:, :, 0].max(axis=1) < STANDSTILL).any())
 

@@ -127,5 +127,7 @@ def powers(result: ResultData) -> dict[str, Array]:
         series[key] = series.get(key, np.zeros(len(result.times))) + np.asarray(power)
     speed = np.array([tyre.motion(just_before(result.times, i)).speed for i in range(len(result.times))])
     made = np.asarray(budget.power("generated"))
+    left = np.asarray(budget.power("lost")) + np.asarray(budget.power("stored"))
+    series |= {"generated": made, "lost and stored": left}
     series["rolling_resistance"] = np.divide(made, speed, out=np.zeros_like(made), where=speed >= STANDSTILL)
     return series

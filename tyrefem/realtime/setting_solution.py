@@ -87,6 +87,7 @@ class Solution:
         values |= dict(zip(tyre.heat_names, zones.tolist(), strict=True))
         values |= dict(zip(tyre.loss_names, lost.tolist(), strict=True))
         values["stored"] = float(zones.sum() - lost.sum())
+        values |= {"generated": float(zones.sum()), "lost and stored": float(lost.sum()) + values["stored"]}
         speed, load = float(inputs[0]), float(inputs[1])
         force = float(zones.sum()) / speed if speed >= STANDSTILL else 0.0
         values |= {"rolling_resistance": force, "rolling_resistance_coefficient": force / load if load > 0 else 0.0}

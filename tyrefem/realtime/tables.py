@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -142,8 +142,8 @@ class Probe:
         slopes = [(sinks(*(20.0 + 10.0 * np.eye(3)[k])) - still) / 10.0 for k in range(3)]
         return np.column_stack([still - 20.0 * sum(slopes), *slopes])
 
-    def tables(self) -> Tables:
-        """The tables of the box.
+    def tables(self, shared: Callable[[Array, Array], tuple[Array, Array]] | None = None) -> Tables:
+        """The tables of the box. ``shared``: what evaluates the load cases in place of `at`, as workers do.
 
         Raises
         ------
@@ -160,18 +160,20 @@ class Probe:
         def bend(load: float, pressure: float) -> float:
             return float(np.sqrt(law.deflection(load, pressure, rating))) if load > 0 else 0.0
 
-        # Corners of the box first: they raise the clear error of a load that the tyre cannot carry.
-        self.at(np.ones(1), np.array([(load, pressure) for load in (low, high) for pressure in (least, most)]))
+        if shared is None:
+            # Corners of the box first: they raise the clear error of a load that the tyre cannot carry.
+            self.at(np.ones(1), np.array([(load, pressure) for load in (low, high) for pressure in (least, most)]))
         axes = {
             "speed": _axis(*(float(np.sqrt(limit)) for limit in self.box.ranges["speed"]), count=points.speed),
             "bend": _axis(bend(low, most), bend(high, least), count=points.bend),
             "pressure": _axis(least, most, count=points.pressure),
         }
         pairs = np.array([(law.load(x**2, p, rating), p) for x in axes["bend"] for p in axes["pressure"]])
-        films, heats = self.at(axes["speed"] ** 2, pairs)
+        films, heats = (shared or self.at)(axes["speed"] ** 2, pairs)
         counts = [len(axis) for axis in axes.values()]
         films = np.moveaxis(films.reshape(counts[1], counts[2], counts[0], -1), 2, 0)
-        standing, _ = self.at(np.zeros(1), pairs[:1])
+        # Films of a standing wheel are those of any load; the middle is solved anyway.
+        standing, _ = self.at(np.zeros(1), pairs[:1] if shared is None else self.box.at(np.full(5, 0.5))[None, 1:3])
         roots, pressures = _axis(np.sqrt(low), np.sqrt(high), count=BENDS[0]), _axis(least, most, count=BENDS[1])
         bends = np.array([[[bend(x**2, p)] for p in pressures] for x in roots])
         heat = heats.reshape(*counts[1:], -1)

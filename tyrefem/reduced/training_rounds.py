@@ -247,6 +247,8 @@ class Training:
         self.correction_count = 0
         self.round_size = max(LEAST_CORRECTIONS, int(np.ceil(CORRECTIONS_PER_NUMBER * len(plan.varied))))
         self.sequence = qmc.Halton(len(plan.varied), seed=seed)
+        #: Places of corrections -> places that repeat load cases, where these are costly.
+        self.repeated: Callable[[list[Array]], list[Array]] = list
 
     def fresh_places(self, count: int) -> list[Array]:
         """New points of the unit box, from a Halton sequence."""
@@ -283,7 +285,7 @@ class Training:
         for _ in range(most):
             model = trained(self.base, self.snapshots, self.fineness)
             packed = pack(model, self.plan.packed)
-            places = self._stretched(self.round_size)
+            places = self.repeated(self._stretched(self.round_size))
             changes = [self.variant(place) for place in places]
             shares = [HORIZONS[n % len(HORIZONS)] for n in range(len(places))]
             firsts = range(0, len(places), CORRECTIONS_PER_TASK)

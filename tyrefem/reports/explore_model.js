@@ -457,6 +457,8 @@ class Solution {
     made.forEach((value, i) => { values[tyre.about.heat[i]] = value; sum += value; });
     lost.forEach((value, i) => { values[tyre.about.lost[i]] = value; left += value; });
     values.stored = sum - left;
+    values.generated = sum;
+    values["lost and stored"] = left + values.stored;
     values.rolling_resistance = inputs[0] >= STANDSTILL ? sum / inputs[0] : 0;
     values.rolling_resistance_coefficient = inputs[1] > 0 ? values.rolling_resistance / inputs[1] : 0;
     return values;

@@ -337,7 +337,7 @@ function showTiles(values) {
   const regions = tyre.hotParts.map(([name]) => name), hottest = regions.reduce((a, b) => answers[`${a}_max_degC`] >= answers[`${b}_max_degC`] ? a : b);
   fill("hottest", values.hottest.toFixed(1), "°C", errorOf("hottest"), `${values.hottest_region}, ${DATA.picture.where[values.hottest_place]}`, Boolean(limit) && values.hottest > limit.below);
   fill("drive", answers.hottest_degC.toFixed(1), "°C", errorOf("hottest_degC"), limit ? (answers.hottest_degC > limit.below ? `${(answers.hottest_degC - limit.below).toFixed(1)} K over the limit of ${significant(limit.below, 4)} °C, in the ${short(hottest)}` : `${(limit.below - answers.hottest_degC).toFixed(1)} K below ${significant(limit.below, 4)} °C; in the ${short(hottest)}`) : `in the ${short(hottest)}`, limited("hottest_degC", ...regions.map((name) => `${name}_max_degC`)));
-  fill("resistance", values.rolling_resistance.toFixed(1), "N", errorOf("rolling_resistance"), `coefficient ${values.rolling_resistance_coefficient.toFixed(5)}, hysteresis`, limited("rolling_resistance_N", "rolling_resistance_coefficient"));
+  fill("resistance", values.rolling_resistance.toFixed(1), "N", errorOf("rolling_resistance"), `coefficient ${values.rolling_resistance_coefficient.toFixed(5)} ${errorOf("rolling_resistance_coefficient")}, hysteresis`, limited("rolling_resistance_N", "rolling_resistance_coefficient"));
   const { unit, pascal } = DATA.pressure;
   fill("air", values["contained-air"].toFixed(1), "°C", errorOf("contained-air"), `${significant(values.gas_pressure / pascal, 4)} ${unit} gauge ${anyOutside() ? "± ?" : `± ${significant(errors.gas_pressure / pascal, 1)}`}`, limited("contained-air_degC", "gas_pressure_Pa"));
 }
@@ -349,7 +349,7 @@ function makeReadings() {
     swatch.style.background = `var(${line.colour})`;
     box.addEventListener("change", () => { line.shown = box.checked; drawHistories(); });
     const sensor = DATA.sensors.find((each) => each.name === line.name);
-    const row = make("tr", { title: sensor ? sensor.where : "" }, make("td", { class: "word" }, make("label", {}, box, swatch, short(line.name))), make("td"), make("td", { class: "error" }), make("td"), ...[0, 1, 2].map(() => make("td", { class: "residual" })));
+    const row = make("tr", { title: sensor ? sensor.where : "" }, make("td", { class: "word" }, make("label", {}, box, swatch, short(line.name))), make("td"), make("td", { class: "error" }), make("td"), make("td", { class: "error" }), ...[0, 1, 2].map(() => make("td", { class: "residual" })));
     readingRows[line.name] = row;
     $("readings").append(row);
   });
@@ -361,6 +361,7 @@ function showReadings(values) {
     cells[1].textContent = values[name].toFixed(1);
     cells[2].textContent = errorOf(name).replace("± ", "");
     cells[3].textContent = highest.toFixed(1);
+    cells[4].textContent = errorOf(`${name}_max_degC`).replace("± ", "");
     cells[3].classList.toggle("over", limited(`${name}_max_degC`));
     cells[1].classList.toggle("over", limited(`${name}_degC`));
   }
@@ -369,7 +370,7 @@ function showResiduals() {
   for (const { name } of lines) {
     const cells = readingRows[name].children;
     const off = state.run ? residuals(state.run, name) : null;
-    [off && off.mean, off && off.rms, off && off.largest].forEach((value, k) => { cells[4 + k].textContent = value === null || value === undefined ? "" : `${k !== 1 && value > 0 ? "+" : ""}${fixed(value, 2)} K`; });
+    [off && off.mean, off && off.rms, off && off.largest].forEach((value, k) => { cells[5 + k].textContent = value === null || value === undefined ? "" : `${k !== 1 && value > 0 ? "+" : ""}${fixed(value, 2)} K`; });
   }
   $("readings").closest("table").classList.toggle("no-runs", !state.run);
 }
@@ -397,22 +398,21 @@ function barRow(name, label, colour) {
   return row;
 }
 function headRow(key, label) {
-  const value = make("td");
-  barRows.set(key, { value });
-  return make("tr", { class: "head" }, make("th", { scope: "rowgroup", colspan: 2, text: label }), value, make("td"));
+  const value = make("td"), error = make("td", { class: "error" });
+  barRows.set(key, { value, error });
+  return make("tr", { class: "head" }, make("th", { scope: "rowgroup", colspan: 2, text: label }), value, error);
 }
 function makeBars() {
   const host = $("bars");
-  host.append(headRow("resistance", "Rolling resistance"), barRow("rolling_resistance", "of hysteresis", "var(--c1)"), headRow("made", "Generated"));
+  host.append(headRow("resistance", "Rolling resistance"), barRow("rolling_resistance", "of hysteresis", "var(--c1)"), headRow("generated", "Generated"));
   for (const name of tyre.about.heat) host.append(barRow(name, short(name.slice(11)), "var(--c1)"));
-  host.append(headRow("left", "Lost and stored"));
+  host.append(headRow("lost and stored", "Lost and stored"));
   for (const name of tyre.about.lost) host.append(barRow(name, short(name.slice(6)), "var(--c2)"));
   host.append(barRow("stored", "stored in the tyre", "var(--c0)"));
 }
 function showBudget(values) {
   if (!state.own) state.own = { resistance: values.rolling_resistance };
-  const made = tyre.about.heat.reduce((sum, name) => sum + values[name], 0), lost = tyre.about.lost.reduce((sum, name) => sum + values[name], 0);
-  const most = Math.max(made, lost, ...[...tyre.about.lost, "stored"].map((name) => Math.abs(values[name])), 1e-9), force = values.rolling_resistance, own = state.ownResistance;
+  const most = Math.max(values.generated, ...[...tyre.about.lost, "stored"].map((name) => Math.abs(values[name])), 1e-9), force = values.rolling_resistance, own = state.ownResistance;
   const scale = Math.max(force, own || 0, 1e-9) * 1.1;
   for (const name of [...tyre.about.heat, ...tyre.about.lost, "stored"]) {
     const { bar, value, error } = barRows.get(name);
@@ -428,8 +428,11 @@ function showBudget(values) {
   row.value.textContent = `${force.toFixed(1)} N`;
   row.error.textContent = errorOf("rolling_resistance");
   barRows.get("resistance").value.textContent = "";
-  barRows.get("made").value.textContent = `${fixed(made, most < 10 ? 2 : 0)} W`;
-  barRows.get("left").value.textContent = `${fixed(lost + values.stored, most < 10 ? 2 : 0)} W`;
+  for (const name of ["generated", "lost and stored"]) {
+    const { value, error } = barRows.get(name);
+    value.textContent = `${fixed(values[name], most < 10 ? 2 : 0)} W`;
+    error.textContent = errorOf(name);
+  }
   $("budget-note").textContent = `whole tyre, at ${$("clock").textContent}; mark: the study’s own`;
 }
 
@@ -552,7 +555,7 @@ function drawPins() {
   add("rolling resistance of the drive", ...both("rolling_resistance_N"), 1, "N", "rolling_resistance_N");
   add("its coefficient", ...both("rolling_resistance_coefficient"), 5, "", "rolling_resistance_coefficient");
   add("contained air’s pressure", ...both("gas_pressure", DATA.pressure.pascal), 1, DATA.pressure.unit, "gas_pressure", DATA.pressure.pascal);
-  for (const name of [...tyre.about.heat, ...tyre.about.lost, "stored"]) add(short(name), ...both(name), 1, "W", name);
+  for (const name of [...tyre.about.heat, "generated", ...tyre.about.lost, "stored", "lost and stored"]) add(short(name), ...both(name), 1, "W", name);
 }
 
 /* ---- texts ---- */
@@ -570,7 +573,7 @@ function showTexts() {
 function makeErrors() {
   const cells = [["anywhere in the section, any time", `${significant(DATA.certificate.field)} K`]];
   const unit = (name) => /^(generated|lost|stored)/.test(name) ? "W" : name === "rolling_resistance" ? "N" : name === "gas_pressure" ? "Pa" : "K";
-  for (const name of [...tyre.about.read, "contained-air", "hottest", ...tyre.hotParts.map(([region]) => `${region} max`), "gas_pressure", "rolling_resistance", ...tyre.about.heat, ...tyre.about.lost, "stored"]) {
+  for (const name of [...tyre.about.read, "contained-air", "hottest", ...tyre.hotParts.map(([region]) => `${region} max`), "gas_pressure", "rolling_resistance", ...tyre.about.heat, "generated", ...tyre.about.lost, "stored", "lost and stored"]) {
     if (errors[name] !== undefined) cells.push([short(name).replace(" max", ", its highest"), `${significant(errors[name])} ${unit(name)}`]);
   }
   for (const [name, value] of cells) $("errors").append(make("div", {}, make("dt", { text: name }), make("dd", { text: value })));

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from typing import Any
 
 from tyrefem.schemas.answers import ANSWERS, Keys
@@ -11,6 +12,7 @@ from tyrefem.schemas.rows import rows_of
 
 TYPES: dict[str, Any] = {
     "text": "string", "number": "number", "integer": "integer", "truth": "boolean", "list": "array", "table": "object",
+    "written": "object",
 }  # fmt: skip
 #: End of a key -> unit.
 UNITS = {
@@ -55,7 +57,42 @@ def answer_schema(command: str) -> Schema:
                 entry = entry.setdefault(kind, {})
         # What is known already, null among it, stays.
         entry |= {**_table(inner), **entry}
+        if "*" in inner:
+            entry.setdefault("additionalProperties", True)
+    _close(schema)
     return schema
+
+
+def _close(node: Schema) -> None:
+    """Values behind names (``->``) are no tables, unless their keys are known."""
+    if "->" in node.get("description", "") and "properties" not in node:
+        node.setdefault("additionalProperties", {"not": {"type": "object"}})
+    for below in (*node.get("properties", {}).values(), node.get("items"), node.get("additionalProperties")):
+        if isinstance(below, dict):
+            _close(below)
+
+
+def unknown_keys(data: Any, schema: Schema, place: str = "") -> Iterator[str]:
+    """Places in an answer, at any depth, with a key that the schema does not know, or a table without known keys.
+
+    >>> list(unknown_keys({"a": [{"b": 1, "c": 2}]}, {"properties": {"a": {"items": {"properties": {"b": {}}}}}}))
+    ['.a[].c']
+    """
+    if isinstance(data, list):
+        for each in data:
+            yield from unknown_keys(each, schema.get("items", {}), f"{place}[]")
+    elif isinstance(data, dict) and schema.get("additionalProperties") is not True:
+        properties, names = schema.get("properties", {}), schema.get("additionalProperties")
+        if "properties" not in schema and not names:
+            yield f"{place} {sorted(data)[:9]}"
+            return
+        for key, value in data.items():
+            if key in properties:
+                yield from unknown_keys(value, properties[key], f"{place}.{key}")
+            elif names:
+                yield from unknown_keys(value, names, f"{place}{{}}")
+            else:
+                yield f"{place}.{key}"
 
 
 def steps_of(place: str) -> list[tuple[str, str]]:
@@ -76,6 +113,8 @@ def _table(keys: Keys) -> Schema:
         unit = unit_of(key.removesuffix("*"))
         entry: Schema = {"title": f"{key.removesuffix('*')} [{unit}]" if unit else key.removesuffix("*")}
         entry["description"] = words
+        if kind == "written":
+            entry["additionalProperties"] = True
         if kind in TYPES:
             entry["type"] = [TYPES[kind], "null"] if nullable else TYPES[kind]
         properties[key.removesuffix("*")] = entry

@@ -12,7 +12,7 @@ Keys = Mapping[str, str]
 
 _STUDY = {"study": "text: Name of the study.", "title": "text: Title of the study."}
 _VERSIONS = {
-    "versions": "table: Versions of tyrefem, Python and the libraries that influence results.",
+    "versions": "table: tyrefem, Python, library that influences results -> its version.",
     "plugins*": "list: Your own effects, laws and answers that were used: kind, name, class, file or package, sha256.",
 }
 _FOLDER = {
@@ -25,7 +25,7 @@ _FOLDER = {
 _AGAIN = {
     "wall_time_s": "number: Time of the computation.",
     "random_seed": "integer?: Seed; null where nothing is random.",
-    "input": "table: The study as written, with all changes.",
+    "input": "written: The study with all changes; keys as in schemas/study.json.",
 }
 _WHEEL = {
     "pressure_Pa": "number: Gauge pressure.",
@@ -103,7 +103,7 @@ ANSWERS: dict[str, Keys] = {
         "noise": "table: Noise as stated and as the data have it.",
         "confidence": "number?: Least probability of a named effect, also without single sensors and runs.",
         "discrepancies": "list: What other errors of the model would change.",
-        "possible_effects": "table: Effects that may act beside what else is wrong.",
+        "possible_effects": "table: Effect -> probability beside what else is wrong.",
         "strain_laws": "list: Other strain laws.", "better_strain_law": "table?: A strain law that fits better.",
         "conformal": "table?: Set with known coverage.", "prior_sensitivity": "list: Other priors and their verdicts.",
         "where": "table?: Where measurement and study disagree most.",
@@ -139,8 +139,9 @@ ANSWERS: dict[str, Keys] = {
     },
     "sweep": {
         **_STUDY, **_FOLDER, **_VERSIONS, **_WORDS, **_MESH,
-        "random_seed": "integer?: Seed of the sample.", "input": "table: The study as written.",
-        "asked": "table: The sweep as read.", "sample*": "table: Sampling, numbers of variants, seconds.",
+        "random_seed": "integer?: Seed of the sample.", "input": "written: The study; keys as in schemas/study.json.",
+        "asked": "written: The sweep as read; keys as in schemas/sweep.json.",
+        "sample*": "table: Sampling, numbers of variants, seconds.",
         "tolerance_K": "number: Largest error that the certificate allows.",
         "failures": "table: Variant -> why it failed.", "sweep*": "table: Main effects of the varied numbers.",
         "pareto*": "table: Variants of the Pareto front.", "indices*": "table: Sobol indices.",
@@ -148,21 +149,23 @@ ANSWERS: dict[str, Keys] = {
         "envelope*": "table: Largest speed by load and pressure.", "*": "any: Answers of your own, by name.",
     },
     "export": {
-        "steady": "table: Largest errors in steady drives, K (rolling_resistance: N).",
-        "driven": "table: The same in changing drives.", "worst": "number: Largest error of a temperature, K.",
+        "steady": "table: Output -> largest error in steady drives, K (rolling_resistance: N).",
+        "driven": "table: Output -> the same in changing drives.",
+        "worst": "number: Largest error of a temperature, K.",
         "tolerance": "number: Allowed error, K.", "cases": "list: Numbers of steady and changing drives.",
         "trained_on": "integer: Number of full runs of the training.", "duration": "number: Length of a drive, s.",
-        "tables": "table: Errors of tabulated films and heat.", "file": "text: The model.", "fmu*": "text: The FMU.",
+        "tables": "table: films, heat -> relative error of the table.", "file": "text: The model.",
+        "fmu*": "text: The FMU.",
     },
     "explore": {
         "file": "text: The page.", "numbers": "list: Dotted names of the sliders.",
         "modes": "integer: Number of modes.",
-        "errors": "table: Largest error of each output and answer in fresh full runs: K, Pa, W, N.",
+        "errors": "table: Output or answer -> largest error in fresh full runs: K, Pa, W, N.",
         "field": "number: Largest error at any node and reading, K.",
         "worst": "number: Largest error of a temperature, K.", "tolerance": "number: Allowed error, K.",
         "cases": "integer: Number of fresh full runs.",
         "trained_on": "integer: Number of runs and corrections of the training.",
-        "products": "table: Largest relative error of the parts as products of the numbers.",
+        "products": "table: Part -> largest relative error of its product of the numbers.",
         "plugins": "list: Your own effects and laws in the study.",
     },
     "press": {
@@ -227,7 +230,8 @@ ANSWERS: dict[str, Keys] = {
         "share_of_phases_at_the_shortest": "table: Phase -> share of the damage.",
         "drift_of_the_energy_over_its_peak_median": "number?: Error of the closed cycle.",
         "places": "list: Places that fail first, with plane, energy and temperature.",
-        "sensitivity": "list: Shortest life for other inputs.", "cards": "table: Region -> its [fatigue].",
+        "sensitivity": "list: Shortest life for other inputs.",
+        "cards": "written: Region -> its [fatigue] in SI; keys as in schemas/material.json.",
         "mesh": "table: Mechanical mesh.",
     },
     "wear": {
@@ -236,19 +240,20 @@ ANSWERS: dict[str, Keys] = {
         "camber_rad*": "number: Camber.", "force_N*": "list: Force of the road, x, y, z.",
         "friction_power_W": "number: Friction power.", "mean_wear_mm_per_1000_km": "number: Mean wear of the rings.",
         "most_wear_mm_per_1000_km": "number: Greatest wear.", "mass_mg_per_km": "number: Mass worn.",
-        "card": "table: The [wear] of the tread.", "phases*": "list: Wear of every phase of the drive.",
+        "card": "written: The [wear] of the tread in SI; keys as in schemas/material.json.",
+        "phases*": "list: Wear of every phase of the drive.",
         "distance_km*": "number: Distance of the worn section.", "worn_section*": "any: The worn section.",
     },
     "strain": {
         **_STUDY, **_MESH, **_VERSIONS, "phase": "text: Phase of the load.", "load_N": "number: Load.",
         "pressure_Pa": "number: Gauge pressure.", "load_law_deflection_m": "number?: Deflection by the load law.",
-        "loss_convention": "text: nasa or sinusoid.", "parts": "table: Parts of the section with region and title.",
+        "loss_convention": "text: nasa or sinusoid.", "parts": "table: Part -> region and title.",
         "volume_m3": "table: Part -> volume.",
         "laws": "table: Law -> deflection, energies by part, coefficient, temperatures.",
         "refused": "table: Law -> why it has no solution.",
     },
     "rig simulate": {
-        "highest_degC": "table: Run -> sensor -> highest reading.", "words": "list: What to know.",
+        "highest_degC": "table: Highest reading by run and sensor.", "words": "list: What to know.",
         "folder": "text: Folder of the tables.",
     },
     "rig identify": {
@@ -313,11 +318,13 @@ ANSWERS: dict[str, Keys] = {
         "copy_of*": "text: The card that was copied.", "note*": "text: Numbers that hold for one tyre only.",
         "size*": "text: The size.", "rules*": "text: Rules of the size.",
         "outer_diameter_m*": "number: Outer diameter.", "overall_width_m*": "number: Overall width.",
-        "numbers*": "table: Number of the rules -> quantity.", "estimates*": "integer: Numbers that are estimates.",
+        "numbers*": "table: Number of the rules -> quantity with its unit.",
+        "estimates*": "integer: Numbers that are estimates.",
     },
     "show": {
         "kind": "text: What is shown.", "name": "text: Its name.", "file*": "text: Its file.",
-        "content*": "table: The card, or the effect.", "facts*": "table: What the picture shows, in numbers.",
+        "content*": "written: The card, keys as in its schema; or family, equation and parameters of the effect.",
+        "facts*": "table: What the picture shows, in numbers.",
         "picture*": "text: File of the picture or mesh.",
     },
     "schema": {

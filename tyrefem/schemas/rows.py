@@ -7,6 +7,7 @@ Lines are written as in `tyrefem.schemas.answers`. Further keys may come; those 
 from __future__ import annotations
 
 from tyrefem.schemas.answers import ANSWERS, Keys
+from tyrefem.schemas.inner_rows import COMMON, INNER, MESH, SECTION
 
 _PLACE = {
     "r_m": "number: Radius.", "z_m": "number: Axial place, from the middle.",
@@ -42,6 +43,17 @@ _RATE = {
     "right": "integer: Cases that hold.", "of": "integer: Cases that count.", "rate": "number?: Their share.",
     "low": "number: Lower end of the 95 % interval.", "high": "number: Upper end.", "goal*": "number: Goal.",
     "goal_is*": "text: at least or at most.",
+}  # fmt: skip
+
+_POINT = {
+    "F_x_N": "number: Force on the tyre, forward.", "F_y_N": "number: To the left.", "F_z_N": "number: Load.",
+    "M_x_Nm": "number: Overturning moment.", "M_y_Nm": "number: Rolling resistance moment.",
+    "M_z_Nm": "number: Aligning moment.", "slip_angle_rad": "number: Slip angle.", "slip": "number: Slip.",
+    "camber_rad*": "number: Camber.", "speed_m_s": "number: Speed.", "torque_Nm": "number: Torque of the axle.",
+    "sliding_share": "number: Share of the contact that slides.", "friction_power_W": "number: Friction power.",
+    "turn_slip_1_m": "number: Curvature of the path.", "deflection_m": "number: Deflection.",
+    "travel_m_rad": "number: Travel per radian of rotation.", "pneumatic_trail_m": "number?: Trail.",
+    "loss_power_W": "number?: Power that the rubber loses.", "axle_power_W": "number?: Power of the axle.",
 }  # fmt: skip
 
 #: Place in an answer -> its keys.
@@ -191,7 +203,7 @@ ROWS: dict[str, Keys] = {
     "plan.sets[]": {"effects": "text: Set of effects.", "probability": "number: Before the next run."},
     "plan.steps[]": {
         "step": "integer: Number of the step.", "kind": "text: run or sensor.", "run": "integer?: Number of the run.",
-        "drive": "text?: The drive in words.", "changes": "table?: The drive as changes of the study.",
+        "drive": "text?: The drive in words.", "changes": "table?: Dotted name -> value in this drive.",
         "duration_s": "number?: Duration.", "sensor": "text?: New sensor.", "place": "text?: Its place.",
         "cost": "number: Cost of the step.", "total_cost": "number: Of all steps up to here.",
         "gain_nats": "number: Expected information.", "total_gain_nats": "number: Of all steps up to here.",
@@ -252,7 +264,8 @@ ROWS: dict[str, Keys] = {
     },
     "sweep.envelope": {
         "rows": "list: Largest speed of every load and pressure.", "rating_tkph": "list: Load times speed.",
-        "runs": "integer: Full runs.", "why_full_runs": "text?: Why no reduced model.", "asked": "table: As read.",
+        "runs": "integer: Full runs.", "why_full_runs": "text?: Why no reduced model.",
+        "asked": "written: As read; keys as in schemas/sweep.json.",
         "words": "list: In sentences.",
     },
     "sweep.optimum": {
@@ -260,19 +273,8 @@ ROWS: dict[str, Keys] = {
         "as_it_is": "table: The study's own answers.", "limits": "table: Answer -> limits.",
         "evaluated": "integer: Number of variants.", "exhaustive": "truth: Was every variant tried?",
         "ended": "text: Why the search ended.", "why_full_runs": "text?: Why no reduced model.",
-        "asked": "table: As read.",
+        "asked": "written: As read; keys as in schemas/sweep.json.",
         "words": "list: In sentences.",
-    },
-    "forces.points[]": {
-        "F_x_N": "number: Force on the tyre, forward.", "F_y_N": "number: To the left.", "F_z_N": "number: Load.",
-        "M_x_Nm": "number: Overturning moment.", "M_y_Nm": "number: Rolling resistance moment.",
-        "M_z_Nm": "number: Aligning moment.", "slip_angle_rad": "number: Slip angle.", "slip": "number: Slip.",
-        "camber_rad": "number: Camber.", "speed_m_s": "number: Speed.", "torque_Nm": "number: Torque of the axle.",
-        "sliding_share": "number: Share of the contact that slides.", "friction_power_W": "number: Friction power.",
-        "turn_slip_1_m": "number: Curvature of the path.", "deflection_m": "number: Deflection.",
-        "travel_m_rad": "number: Travel per radian of rotation.", "pneumatic_trail_m": "number?: Trail.",
-        "loss_power_W": "number?: Power that the rubber loses.", "axle_power_W": "number?: Power of the axle.",
-        "free": "number: 1: the torque is given, not the slip.",
     },
     "press --critical-speed.critical[]": {
         "pressure_Pa": "number: Gauge pressure.", "temperature_degC": "number?: Temperature of the cards.",
@@ -366,6 +368,17 @@ ROWS: dict[str, Keys] = {
         "words": "text: What the plugin must do.", "fault": "text?: What is wrong; null: kept.",
         "trials": "integer: How often it was tried.",
     },
+    "roll (curve).points[]": _POINT,
+    "forces.points[]": {**_POINT, "free": "number: 1: the torque is given, not the slip."},
+    "show.facts": {
+        **{f"{key.removesuffix('*')}*": line for key, line in {**MESH, **SECTION}.items() if key != "*"},
+        "load_N*": "number: Load of the strains.", "pressure_Pa*": "number: Gauge pressure.",
+        "deflection_m*": "number: Deflection.", "rolling_radius_m*": "number: Travel per radian.",
+        "footprint_length_m*": "number: Length of the footprint.",
+        "road_fraction*": "number: Share of a turn on the road.", "regions*": "list: Strain and energy by region.",
+        "*": "any: What else the picture shows.",
+    },
+    "show.facts.regions[]": {"*": "any: Column of the table that is printed -> value."},
     "list.entries[]": {
         "name": "text: Name.", "title*": "text: Title.", "file*": "text?: File.",
         "side*": "text: Side of a boundary law.",
@@ -380,7 +393,10 @@ def rows_of(command: str) -> dict[str, Keys]:
     >>> list(rows_of("rig layers"))
     ['rows[]']
     """
-    places = {place.partition(".")[2]: keys for place, keys in ROWS.items() if place.partition(".")[0] == command}
+    known = {key.removesuffix("*") for key in ANSWERS[command]}
+    places = {place: keys for key, rows in COMMON.items() if key in known for place, keys in rows.items()}
+    inner = {**ROWS, **INNER}.items()
+    places |= {place.partition(".")[2]: keys for place, keys in inner if place.partition(".")[0] == command}
     if "plugins[]" not in places and any(key.removesuffix("*") == "plugins" for key in ANSWERS[command]):
         places["plugins[]"] = _PLUGIN
     return places
