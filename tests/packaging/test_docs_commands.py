@@ -34,7 +34,6 @@ MORE = {
     "tyrefem explore": ["--tolerance", "10 K"],
     "tyrefem explore nasa-22x5.5-8pr --set": ["--vary", "drive.speed=15 mph:20 mph"],
     "tyrefem export": ["--tolerance", "50 K", "--workers", "1"],
-    "tyrefem rig layers": ["--most", "1"],
 }
 #: Command -> commands that come before it on its page.
 FIRST = {
@@ -60,7 +59,7 @@ ELSEWHERE = {
     r"tyrefem (roll|forces) .*": "a minute: tests/cli/test_roll_command.py, tests/cli/test_forces_command.py",
     r"tyrefem press .*(--critical-speed|rolling=true).*": "minutes: tests/cli/test_critical_speed.py, tests/rolling",
     r"tyrefem press .*(--camber|--drum).*": "a full section in large motion: tests/cli/test_press_command.py",
-    r"tyrefem rig identify .*": "half a minute: tests/rig",
+    r"tyrefem rig (identify|layers) .*": "half a minute: tests/rig",
     r"tyrefem sweep .*(--tornado|--indices|--count|output\.life|--minimise|crown-angle).*": "minutes: tests/sweep",
     r"tyrefem sweep .*--link .*": "a radial for every variant: tests/sweep",
     r"tyrefem sweep .* --workers 4": "the same sweep as of docs/sweeps.md, which runs here",

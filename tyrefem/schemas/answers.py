@@ -205,6 +205,7 @@ ANSWERS: dict[str, Keys] = {
     },
     "roll (curve)": {
         **_STUDY, **_VERSIONS, "varied": "text: slip_angle or slip.", "points": "list: The forces at every slip.",
+        "peak*": "table?: Largest force, and where.",
         "*": "any: Stiffnesses of the curve.",
     },
     "forces": {
