@@ -11,6 +11,7 @@ full run has its own mesh and operators.
 
 Prints a table and, as the last line, one JSON object.
 Usage: python benchmarks/sweep.py [--quick] [--sweep NAME] [--variants N] [--mesh SIZE] [--tolerance K] [--full N]
+       [--set NAME=VALUE]
 """
 
 # ruff: noqa: E402 - the number of BLAS threads must be set before numpy is loaded.
@@ -64,14 +65,18 @@ def main() -> None:
     parser.add_argument("--tolerance", type=float, default=0.01, help="K, of the certificate")
     parser.add_argument("--full", type=int, default=8, help="full runs that are timed and compared")
     parser.add_argument("--sweep", help="name of a sweep file")
+    parser.add_argument(
+        "--set", action="append", default=[], metavar="NAME=VALUE", help="of the study, e.g. strain law"
+    )
     options = parser.parse_args()
     if options.quick:
         options.variants, options.mesh, options.full = 100, "8 mm", 3
-    study = tyrefem.study("nasa-22x5.5-8pr", {"mesh.size": options.mesh})
+    changes = {"mesh.size": options.mesh, **dict(each.split("=", 1) for each in options.set)}
+    study = tyrefem.study("nasa-22x5.5-8pr", changes)
     if options.sweep:
         from tyrefem.sweep.design import loaded
 
-        plan = loaded(options.sweep, {"mesh.size": options.mesh}, sample="sobol", count=options.variants).plan
+        plan = loaded(options.sweep, changes, sample="sobol", count=options.variants).plan
         study = plan.study
     else:
         plan = plan_of(study, BOX, sample="sobol", count=options.variants)
@@ -124,6 +129,8 @@ def main() -> None:
     print(f"{'times faster':34}{ratio[0]:10.1f}{ratio[1]:10.1f}")
     print(f"{'a variant alone, times faster':34}{alone[0]:10.1f}{alone[1]:10.1f}\n")
     print(f"certificate {found.certificate.error:.4f} K of {found.certificate.cases} fresh runs;", end=" ")
+    if found.certificate.energies is not None:
+        print(f"strain energies learnt within {found.certificate.energies:.2g};", end=" ")
     print(f"{len(errors)} others: {max(errors):.4f} K, sensors {max(sensors):.4f} K")
     print(
         json.dumps(

@@ -60,7 +60,7 @@ ELSEWHERE = {
     r"tyrefem press .*(--critical-speed|rolling=true).*": "minutes: tests/cli/test_critical_speed.py, tests/rolling",
     r"tyrefem press .*(--camber|--drum).*": "a full section in large motion: tests/cli/test_press_command.py",
     r"tyrefem rig (identify|layers) .*": "half a minute: tests/rig",
-    r"tyrefem sweep .*(--tornado|--indices|--count|output\.life|--minimise|crown-angle).*": "minutes: tests/sweep",
+    r"tyrefem sweep .*(--tornado|--indices|--count|output\.life|--minimise|crown-angle|eight-numbers).*": "minutes: tests/sweep",
     r"tyrefem sweep .*--link .*": "a radial for every variant: tests/sweep",
     r"tyrefem sweep .* --workers 4": "the same sweep as of docs/sweeps.md, which runs here",
     r"tyrefem run (nasa-campaign|aircraft-sizes)": "many cases: tests/campaign, tests/sizes",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from scipy.integrate import simpson
 
 from tyrefem import study
 from tyrefem.api import Study
-from tyrefem.reduced.answers import reduced_outcomes
+from tyrefem.reduced.answers import reduced_answers, reduced_outcomes
 from tyrefem.reduced.balance import reduced_balance
 from tyrefem.reduced.model import NotReducibleError
 from tyrefem.reduced.readout import Readout
@@ -113,9 +114,37 @@ def test_a_sweep_says_how_large_the_error_may_be(plan: Plan) -> None:
     swept: Sweep = sweep(plan, tolerance=0.02)
     assert swept.certificate is not None
     assert (swept.table["by"] == "reduced").all()
-    assert (swept.table["error_K"] == swept.certificate.worst).all()
+    # Every row has its own estimate.
+    assert (swept.table["error_K"] > 0).all()
+    assert swept.table["error_K"].nunique() == len(swept.table)
+    assert swept.table["error_K"].median() < 10 * swept.certificate.tolerance
     assert swept.certificate.worst <= 0.02
     assert swept.certificate.errors["hottest_degC"] <= swept.certificate.worst
+
+
+def test_the_estimated_error_is_that_of_the_modes_left_out(trained: Surrogate, plan: Plan) -> None:
+    """With half of the modes the error against all modes is known: the estimate is above it, by less than 20 times."""
+    whole = trained.model
+    half = whole.size // 2
+    few = replace(whole, V=whole.V[:, :half], further=whole.V[:, half:])
+    studies = [plan.study.replace(plan.variants[number]) for number in (2, 11, 23, 35)]
+    exact, rough = (reduced_answers(model, studies, None) for model in (whole, few))
+    for better, worse in zip(exact, rough, strict=True):
+        assert isinstance(better, Answered)
+        assert isinstance(worse, Answered)
+        true = temperature_error(worse.answers, better.answers)
+        assert true > 1e-3
+        assert worse.error is not None
+        assert true <= worse.error < 20 * true
+        # The model with all modes has a smaller estimate of its own.
+        assert better.error is not None
+        assert better.error < worse.error
+
+
+def test_a_model_without_further_modes_estimates_nothing(trained: Surrogate, plan: Plan) -> None:
+    (outcome,) = reduced_answers(replace(trained.model, further=None), [plan.study.replace(plan.variants[1])], None)
+    assert isinstance(outcome, Answered)
+    assert outcome.error is None
 
 
 def test_outside_its_box_it_is_not_asked(trained: Surrogate, tyre: Study) -> None:

@@ -164,6 +164,8 @@ def test_fresh_shapes_are_met_within_the_tolerance(trained: Surrogate, plan: Pla
         full = perform(plan.task(number)).answers
         assert set(outcome.answers) == set(full)
         assert temperature_error(outcome.answers, full) < 0.5
+        assert outcome.error is not None
+        assert temperature_error(outcome.answers, full) <= certificate.error_of(outcome.error)
         for exact in ("mass_kg", "load_N", "deflection_m"):
             assert outcome.answers[exact] == pytest.approx(full[exact], rel=1e-12)
         assert outcome.answers["rolling_resistance_N"] == pytest.approx(full["rolling_resistance_N"], rel=5e-3)

@@ -14,7 +14,7 @@ from tyrefem.api import Study
 from tyrefem.cli import main
 from tyrefem.errors import InputError
 from tyrefem.inputs.changes import value_at
-from tyrefem.reduced.model import NotReducibleError
+from tyrefem.reduced.shapes import counts_of, shape_numbers
 from tyrefem.reduced.surrogate import check_varied, surrogate, why_outside
 from tyrefem.variants.plan import plan_of
 
@@ -237,7 +237,13 @@ def test_a_reduced_model_follows_linked_numbers(tyre: Study) -> None:
     assert "does not change with" in why_outside(tyre.replace(outside), tyre, same.varied)
 
 
-def test_links_that_need_other_meshes_are_run_in_full(tyre: Study) -> None:
+def test_linked_gauges_share_a_mesh(tyre: Study) -> None:
     plan = plan_of(tyre, {"section.thickness_scale.*": {"factor": [1.0, 1.1]}})
-    with pytest.raises(NotReducibleError, match=r"'section\.thickness_scale\.carcass' changes the mesh"):
-        check_varied(plan)
+    check_varied(plan)
+    assert shape_numbers(plan.varied) == [0]
+    counts, alone = counts_of(plan), plan_of(tyre, {"section.thickness_scale.*": {"factor": [1.0, 1.0001]}})
+    assert counts is not None
+    fewer = counts_of(alone)
+    assert fewer is not None
+    # The thickest corner decides.
+    assert sum(counts.rows) >= sum(fewer.rows)

@@ -32,7 +32,7 @@ def reduced_answers(model: ReducedModel, studies: Sequence[StudyData], time_to: 
     outcomes: dict[int, ReducedOutcome] = {}
     for number, outcome in reduced_outcomes(model, studies):
         if isinstance(outcome, Variant):
-            outcomes[number] = Answered(answers(outcome, time_to), "reduced")
+            outcomes[number] = Answered(answers(outcome, time_to), "reduced", outcome.estimated_error)
         else:
             outcomes[number] = outcome
     return [outcomes[number] for number in range(len(studies))]
@@ -47,7 +47,7 @@ def reduced_outcomes(
     ----------
     tolerance : K, of time integration.
     """
-    yield from outcomes_of(model, [RollingTyre(study, model.base) for study in studies], tolerance)
+    yield from outcomes_of(model, [model.tyre(study) for study in studies], tolerance)
 
 
 def outcomes_of(

@@ -51,6 +51,10 @@ class ReducedBalance:
             initial_of = reservoirs[name].initial
             self.start[m + i] = initial if initial_of is None else initial_of
 
+    def on(self, model: ReducedModel) -> ReducedBalance:
+        """The same balance on other modes."""
+        return ReducedBalance(model, self.tyre, self.bodies, self.films, self.reservoirs)
+
     @functools.cached_property
     def exchanges(self) -> Exchanges:
         """Matrices of all heat exchanges."""

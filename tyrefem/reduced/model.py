@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -16,7 +16,9 @@ from tyrefem.conduction.operators import Operators
 from tyrefem.conduction.points import located
 from tyrefem.errors import InputError
 from tyrefem.geometry.wall import wall_of
+from tyrefem.inputs.study import StudyData
 from tyrefem.reduced.exchanges import Exchanges, Layout, exchanges
+from tyrefem.reduced.learnt_cycles import LearntCycles
 from tyrefem.reduced.pod import CANDIDATE_NODES
 from tyrefem.reduced.shape_operators import ShapeGeometry, ShapeOperators
 from tyrefem.simulation.rolling_tyre import RollingTyre
@@ -47,8 +49,13 @@ class ReducedModel(Brief):
     nodes_from_samples: Array
     #: Region -> its nodes that were nearly the hottest in training: the peak is searched there first.
     hot: Mapping[str, NDArray[np.intp]] = field(default_factory=dict)
-    #: Projected operators over the shapes of the section; None: assembled and projected for every shape.
+    #: Projected operators over the shapes of the section, on these and the ``further`` modes; None: assembled and
+    #: projected for every shape.
     shapes: ShapeOperators | None = None
+    #: Further modes of the snapshots, (n, k): errors are estimated on them; None: no estimates.
+    further: Array | None = None
+    #: Strain cycles of the variants, learnt from presses; None: every variant's strain law computes them.
+    cycles: LearntCycles | None = None
 
     def _title(self) -> str:
         return f"of {self.base.study.name}"
@@ -69,6 +76,18 @@ class ReducedModel(Brief):
     def size(self) -> int:
         """Number of modes."""
         return int(self.V.shape[1])
+
+    def tyre(self, study: StudyData) -> RollingTyre:
+        """The tyre of a variant: like the base tyre, with learnt strain cycles if the model has them."""
+        if self.cycles is None:
+            return RollingTyre(study, self.base)
+        return RollingTyre(study, self.base, cycles=self.cycles.schedule(study))
+
+    @functools.cached_property
+    def enriched(self) -> ReducedModel:
+        """The model on its modes and the further ones."""
+        assert self.further is not None
+        return replace(self, V=np.column_stack([self.V, self.further]), further=None)
 
     @functools.cached_property
     def shape(self) -> ShapeGeometry:

@@ -43,6 +43,26 @@ def modes(snapshots: Array, weight: Array, tolerance: float, most: int) -> Array
     )
 
 
+def further_modes(V: Array, snapshots: Array, weight: Array, tolerance: float, most: int) -> Array:
+    """Modes (n, k) beyond V (n, m): POD of what V leaves of the snapshots, until ``tolerance`` (rms) is left.
+
+    >>> fields = np.random.default_rng(0).random((4, 9))
+    >>> V = modes(fields, np.ones(9), 0.2, 2)
+    >>> W = np.column_stack([V, further_modes(V, fields, np.ones(9), 1e-9, 9)])
+    >>> bool(np.abs(fields - fields @ (W @ W.T) / 9).max() < 1e-6)
+    True
+    """
+    root = np.sqrt(weight / weight.sum())
+    scaled, rows = snapshots * root, V * root[:, None]
+    rest = scaled - (scaled @ rows) @ rows.T
+    values, left = np.linalg.eigh(rest @ rest.T)
+    values, left = np.maximum(values[::-1], 0.0), left[:, ::-1]
+    left_out = np.sqrt(np.append(np.cumsum(values[::-1])[::-1], 0.0) / len(snapshots))
+    count = min(int(np.argmax(left_out <= tolerance)), most, int((values > 1e-13 * max(values[0], 1e-300)).sum()))
+    found = rest.T @ left[:, :count] / np.sqrt(values[:count])
+    return np.asarray(orthonormal(found - rows @ (rows.T @ found)) / root[:, None])
+
+
 def orthonormal(X: Array) -> Array:
     """Orthonormalise nearly orthogonal columns by two passes of Cholesky QR."""
     for _ in range(2):

@@ -15,6 +15,7 @@ from tyrefem.cache import Cache, Content
 from tyrefem.conduction.budget import Budget
 from tyrefem.conduction.field import Peak
 from tyrefem.reduced.budget import end_budgets
+from tyrefem.reduced.error_estimate import estimated_errors
 from tyrefem.reduced.solution import NODES, BatchSolution
 from tyrefem.simulation.heat_budget import HeatBudget, whole_tyre
 from tyrefem.simulation.rolling_resistance import just_before
@@ -69,6 +70,11 @@ class Readout:
     def _heats(self) -> Cache[Any]:
         """(name, number of the time) -> heat or power of all variants."""
         return Cache(size=1024)
+
+    @functools.cached_property
+    def errors(self) -> Array | None:
+        """Estimated errors of temperatures, (B,) K; None: no estimates."""
+        return estimated_errors(self.solution)
 
     @functools.cached_property
     def wall(self) -> Array:

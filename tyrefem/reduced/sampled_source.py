@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from tyrefem.reduced.balance import ReducedBalance
 from tyrefem.reduced.heat_change import HeatChange
+from tyrefem.reduced.learnt_cycles import NodeEnergies
 
 Array = NDArray[np.float64]
 #: Range of the table of tan delta, degC, and its spacing, K.
@@ -142,7 +143,9 @@ def _energies(balance: ReducedBalance, phase: int) -> Array:
         for zone, part in model.sample_slices.items():
             if part.start == part.stop:
                 continue
-            row[part] = tyre.hysteresis[zone].lost_per_revolution * cycle.energy_density(
-                zone, model.sample_points[zone]
-            )
+            lost = tyre.hysteresis[zone].lost_per_revolution
+            if isinstance(cycle, NodeEnergies):
+                row[part] = lost * cycle.at_nodes(zone, model.samples[zone])
+            else:
+                row[part] = lost * cycle.energy_density(zone, model.sample_points[zone])
     return energies

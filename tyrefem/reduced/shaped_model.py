@@ -55,6 +55,13 @@ class ShapedModel(ReducedModel):
         """The model on the reference shape."""
         return self._parent
 
+    @functools.cached_property
+    def enriched(self) -> ReducedModel:
+        """The model on its modes and the further ones."""
+        reference = self._parent.enriched
+        fields = (self.base, reference.V, self.samples, self.nodes_from_samples, self.hot)
+        return ShapedModel(*fields, reference=reference, coefficients=self.coefficients)
+
     @property
     def operators(self) -> Operators:
         """Operators of the full model on the variant's mesh, assembled when they are asked for."""
@@ -204,10 +211,10 @@ def on_tyre(reference: ReducedModel, tyre: RollingTyre) -> ReducedModel:
     def make() -> ReducedModel:
         fields = (tyre, reference.V, reference.samples, reference.nodes_from_samples, reference.hot)
         if reference.shapes is None:
-            return ShapedModel(*fields, reference=reference)
+            return ShapedModel(*fields, further=reference.further, reference=reference)
         mesh = tyre.mesh
         coefficients = reference.shapes.coefficients(reference.shape, np.asarray(mesh.mesh.p), mesh.along_meridian)
-        return ShapedModel(*fields, reference=reference, coefficients=coefficients)
+        return ShapedModel(*fields, further=reference.further, reference=reference, coefficients=coefficients)
 
     model: ReducedModel = reference.of_sections.get(tyre.study.section, make)
     return model
@@ -222,16 +229,22 @@ def fill(models: Sequence[ReducedModel]) -> None:
     assert shapes is not None
     together = shapes.combined([model.coefficients for model in waiting if model.coefficients is not None])
     for b, model in enumerate(waiting):
-        model.combined.get(None, functools.partial(_of_shape, together, b))
+        model.combined.get(None, functools.partial(_of_shape, together, b, model.size))
+        if model.further is not None:
+            enriched = model.enriched
+            assert isinstance(enriched, ShapedModel)
+            enriched.combined.get(None, functools.partial(_of_shape, together, b, enriched.size))
 
 
-def _of_shape(together: dict[str, Any], b: int) -> dict[str, Any]:
-    """The operators of shape b from those of all."""
+def _of_shape(together: dict[str, Any], b: int, m: int) -> dict[str, Any]:
+    """The operators of shape b on the first m modes, from those of all shapes on all modes."""
     return {
-        "mass": {region: each[b] for region, each in together["mass"].items()},
-        "conduction": {region: tuple(part[b] for part in parts) for region, parts in together["conduction"].items()},
-        "stored": {region: each[b] for region, each in together["stored"].items()},
-        "load": together["load"][b],
+        "mass": {region: each[b, :m, :m] for region, each in together["mass"].items()},
+        "conduction": {
+            region: tuple(part[b, :m, :m] for part in parts) for region, parts in together["conduction"].items()
+        },
+        "stored": {region: each[b, :m] for region, each in together["stored"].items()},
+        "load": np.ascontiguousarray(together["load"][b, :m]),
         "power": together["power"][b],
-        "films": {side: (R[b], r[b], float(area[b])) for side, (R, r, area) in together["films"].items()},
+        "films": {side: (R[b, :m, :m], r[b, :m], float(area[b])) for side, (R, r, area) in together["films"].items()},
     }

@@ -82,14 +82,15 @@ def with_shapes(model: ReducedModel, studies: Sequence[StudyData]) -> ReducedMod
     """
     tyres = [model.base]
     for study in studies:
-        tyre = RollingTyre(study, model.base)
+        tyre = model.tyre(study)
         try:
             _ = tyre.mesh
         except InputError:
             continue
         tyres.append(tyre)
     rows = {zone: model.nodes_from_samples[part] for zone, part in model.zone_rows.items()}
-    return replace(model, shapes=shape_operators(model.base, model.V, rows, tyres))
+    V = model.V if model.further is None else model.enriched.V
+    return replace(model, shapes=shape_operators(model.base, V, rows, tyres))
 
 
 def shape_count(varied: Sequence[Varied]) -> int:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -55,7 +55,8 @@ class SurrogateCertificate(Brief):
     errors : answer -> largest difference to the validation runs. cases : number of validation runs.
     worst : largest error of any temperature answer, K. tolerance : allowed error, K. trained_on : number of successful
         training runs and corrections. amended : number of corrections. own_mesh : where shapes share a mesh, the
-        largest error of any temperature answer against runs on the variants' own meshes, K.
+        largest error of any temperature answer against runs on the variants' own meshes, K. meshes : largest difference
+        of full runs on both, K. energies : relative error of the strain energies, where they are learnt from presses.
     """
 
     errors: Mapping[str, float]
@@ -65,6 +66,15 @@ class SurrogateCertificate(Brief):
     trained_on: int
     amended: int = 0
     own_mesh: float | None = None
+    meshes: float = 0.0
+    energies: float | None = None
+
+    def error_of(self, estimate: float | None) -> float:
+        """Error of a variant's temperatures, K: its estimate, the difference of the meshes, and with learnt strain
+        energies the largest error in the validation runs, which pressed. Without an estimate that error alone."""
+        if estimate is None:
+            return self.error
+        return estimate + self.meshes + (0.0 if self.energies is None else self.worst)
 
     @property
     def good(self) -> bool:
@@ -182,9 +192,11 @@ def surrogate(
     # Full runs at two opposite corners; residual corrections cover the rest of the box.
     places = [np.zeros(len(plan.varied)), np.ones(len(plan.varied))]
     training.run(places, TRAINING_FACTOR * max(tolerance, LEAST_RUN_TOLERANCE), "training", with_answers=False)
+    training.learn_cycles(tolerance)
     certificate: SurrogateCertificate | None = None
     for trial in range(settings.trials):
-        model = training.correction_rounds(1 if trial else settings.rounds, CORRECTION_FACTOR * tolerance)
+        rounds = 1 if trial else settings.rounds
+        model = training.correction_rounds(rounds, CORRECTION_FACTOR * tolerance, search=True)
         model = training.over_shapes(model)
         places = training.fresh_places(settings.fresh)
         known = len(training.snapshots)
@@ -206,7 +218,11 @@ def surrogate(
         on_own_mesh = [
             (answered, full_run.own_answers) for answered, full_run in both if full_run.own_answers is not None
         ]
-        certificate = certified(pairs, tolerance, known, training.correction_count, on_own_mesh)
+        certificate = replace(
+            certified(pairs, tolerance, known, training.correction_count, on_own_mesh),
+            meshes=between_meshes(full_runs),
+            energies=None if training.cycles is None else training.cycles.error,
+        )
         if certificate.good:
             return Surrogate(model, plan.varied, certificate, plan.time_to)
     assert certificate is not None
@@ -223,6 +239,12 @@ def surrogate(
 
 #: Answers of the reduced model and of a full run.
 Pair = tuple[Mapping[str, Any], Mapping[str, Any]]
+
+
+def between_meshes(full_runs: Sequence[object]) -> float:
+    """Largest difference of temperature answers between full runs on the common and on their own meshes, K."""
+    runs = [run for run in full_runs if isinstance(run, FullRun) and run.own_answers is not None]
+    return max((temperature_error(run.answers, run.own_answers or {}) for run in runs), default=0.0)
 
 
 def certified(

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from tyrefem.conduction.operators import Operators
 from tyrefem.reduced.model import ReducedModel
-from tyrefem.reduced.pod import modes, sample_nodes
+from tyrefem.reduced.pod import further_modes, modes, sample_nodes
 from tyrefem.simulation.result import ResultData
 from tyrefem.simulation.rolling_tyre import RollingTyre
 
@@ -19,6 +19,8 @@ Array = NDArray[np.float64]
 #: A node may be the hottest of a region if it is below its peak by at most this share of the region's range; a field
 #: with a smaller range than this, K, counts as uniform.
 NEAR, EVEN = 0.005, 0.5
+#: Errors are estimated on modes that leave out so much less, and are at most so many times as many.
+FURTHER, MOST_FURTHER = 0.1, 0.7
 
 
 @dataclass(frozen=True)
@@ -94,13 +96,18 @@ def sources_at(ops: Operators, tyre: RollingTyre, t: float, field: Array) -> Arr
     return np.concatenate([source(ops.nodes(zone), t, field[ops.dofs(zone)]) for zone, source in tyre.sources.items()])
 
 
-def trained(base: RollingTyre, sets: Sequence[Snapshots], fineness: ReducedFineness | None = None) -> ReducedModel:
-    """A reduced model on a tyre's mesh, from snapshots of variants on that mesh."""
+def trained(
+    base: RollingTyre, sets: Sequence[Snapshots], fineness: ReducedFineness | None = None, *, further: bool = False
+) -> ReducedModel:
+    """A reduced model on a tyre's mesh, from snapshots of variants on that mesh; ``further``: with estimated errors."""
     fineness = fineness or ReducedFineness()
     ops = base.problem.operators
     fields = np.vstack([snapshot.fields for snapshot in sets])
     hot = hot_nodes(base, sets)
-    V = modes(fields, weight(base, hot), fineness.modes_tolerance, fineness.most_modes)
+    weights = weight(base, hot)
+    V = modes(fields, weights, fineness.modes_tolerance, fineness.most_modes)
+    beyond = (FURTHER * fineness.modes_tolerance, int(MOST_FURTHER * V.shape[1]))
+    more = further_modes(V, fields, weights, *beyond) if further else None
     heats = np.vstack([snapshot.sources for snapshot in sets])
     largest = np.abs(heats).max(axis=1)
     # Normalised: the sources of slow variants count as much as those of fast ones.
@@ -111,7 +118,7 @@ def trained(base: RollingTyre, sets: Sequence[Snapshots], fineness: ReducedFinen
     samples = {
         zone: chosen[(chosen >= a) & (chosen < b)] - a for zone, a, b in zip(zones, ends[:-1], ends[1:], strict=True)
     }
-    return ReducedModel(base, V, samples, everywhere, hot)
+    return ReducedModel(base, V, samples, everywhere, hot, further=more)
 
 
 def weight(base: RollingTyre, hot: Mapping[str, NDArray[np.intp]]) -> Array:

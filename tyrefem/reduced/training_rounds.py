@@ -8,7 +8,7 @@ from __future__ import annotations
 import functools
 import hashlib
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -18,6 +18,8 @@ from tyrefem.cache import Cache
 from tyrefem.errors import InputError
 from tyrefem.geometry.meshing.mapped import Counts
 from tyrefem.reduced.answers import ReducedOutcome, batch_solutions, reduced_answers
+from tyrefem.reduced.error_estimate import estimated_errors
+from tyrefem.reduced.learnt_cycles import LearntCycles, Press, learnt, mechanical_numbers, press_count, press_of
 from tyrefem.reduced.model import NotReducibleError, ReducedModel
 from tyrefem.reduced.residual import TIME_TOLERANCE as CORRECTION_TOLERANCE
 from tyrefem.reduced.residual import correction
@@ -42,7 +44,8 @@ class PackedModel:
 
     Parameters
     ----------
-    base : the study that it was made for. V, samples, nodes_from_samples, hot, shapes : as in `ReducedModel`.
+    base : the study that it was made for. V, samples, nodes_from_samples, hot, shapes, further, cycles : as in
+        `ReducedModel`.
     counts : rows and gaps of the mesh that all shapes of the section share; None: the section does not vary.
     """
 
@@ -53,11 +56,13 @@ class PackedModel:
     hot: Mapping[str, NDArray[np.intp]]
     counts: Counts | None = None
     shapes: ShapeOperators | None = None
+    further: Array | None = None
+    cycles: LearntCycles | None = None
 
     @functools.cached_property
     def digest(self) -> str:
         """Digest of the study and the modes."""
-        text = f"{self.base.digest} {self.counts} {self.shapes is None}"
+        text = f"{self.base.digest} {self.counts} {self.shapes is None} {self.further is None} {self.cycles is None}"
         return hashlib.sha256(text.encode() + self.V.tobytes()).hexdigest()[:16]
 
     def unpacked(self) -> ReducedModel:
@@ -65,7 +70,14 @@ class PackedModel:
         return _models.get(
             self.digest,
             lambda: ReducedModel(
-                base_of(self.base, self.counts), self.V, self.samples, self.nodes_from_samples, self.hot, self.shapes
+                base_of(self.base, self.counts),
+                self.V,
+                self.samples,
+                self.nodes_from_samples,
+                self.hot,
+                self.shapes,
+                self.further,
+                self.cycles,
             ),
         )
 
@@ -87,7 +99,7 @@ def _counts(base: RollingTyre) -> Counts | None:
 def pack(model: ReducedModel, base: Bundle) -> PackedModel:
     """A model packed for other processes; ``base``: the study that it was made for."""
     arrays = (model.V, model.samples, model.nodes_from_samples, model.hot)
-    return PackedModel(base, *arrays, _counts(model.base), model.shapes)
+    return PackedModel(base, *arrays, _counts(model.base), model.shapes, model.further, model.cycles)
 
 
 #: Models and tyres that a process keeps: two sweeps may run on threads of one worker.
@@ -130,12 +142,39 @@ CORRECTIONS_PER_NUMBER, LEAST_CORRECTIONS = 2.0, 10
 CORRECTIONS_PER_TASK = 5
 
 
+#: Candidates for every place that is chosen by its estimated error; candidates in one task.
+CANDIDATES, CANDIDATES_PER_TASK = 6, 32
+
+
+#: Batches of presses at most. Strain cycles are learnt if their relative error times the rise of temperature is at most
+#: so many times the tolerance: errors of single nodes are larger than those of the heat around them.
+PRESS_BATCHES, PRESS_FACTOR = 2, 3.0
+
+
 #: Times tau of the corrections over the duration of a phase, used in turn.
 HORIZONS = (0.1, 0.5)
 
 
 #: Sample points are stretched about the middle of the box, so that its corners need no extrapolation.
 STRETCH = 1.25
+
+
+@dataclass(frozen=True, eq=False)
+class PressTask:
+    """A variant to be pressed: the study, the variant's changes, and the counts of the mesh that all shapes share."""
+
+    packed: Bundle
+    changes: Mapping[str, Any]
+    counts: Counts | None
+
+
+def perform_press(task: PressTask) -> Press | Failed:
+    """Run in a worker: the strain cycles of a variant at the nodes of its mesh."""
+    base = base_of(task.packed, task.counts)
+    try:
+        return press_of(RollingTyre(base.study.replace(task.changes), base))
+    except InputError as error:
+        return Failed(str(error))
 
 
 @dataclass(frozen=True, eq=False)
@@ -185,6 +224,33 @@ def perform_full_run(task: FullRunTask) -> FullRun | Failed:
 
 
 @dataclass(frozen=True, eq=False)
+class CandidateTask:
+    """Variants whose errors are estimated: their changes."""
+
+    changes: Sequence[Mapping[str, Any]]
+
+
+def perform_estimates(task: CandidateTask, packed: PackedModel) -> Array:
+    """Run in a worker: the estimated error of every variant, K; 0 where there is no estimate."""
+    model = packed.unpacked()
+    errors, tyres, places = np.zeros(len(task.changes)), [], []
+    for place, changes in enumerate(task.changes):
+        try:
+            tyres.append(model.tyre(model.base.study.replace(changes)))
+            places.append(place)
+        except InputError:
+            continue
+    try:
+        for numbers, part in batch_solutions(model, tyres, CORRECTION_TOLERANCE):
+            estimates = None if isinstance(part, Failed | NotReducible) else estimated_errors(part)
+            if estimates is not None:
+                errors[[places[number] for number in numbers]] = estimates
+    except InputError:
+        return errors
+    return errors
+
+
+@dataclass(frozen=True, eq=False)
 class CorrectionTask:
     """Variants to be corrected by residuals; ``shares``: tau over the phase duration, per variant."""
 
@@ -208,7 +274,7 @@ def perform_corrections(work: CorrectionTask, packed: PackedModel) -> tuple[Corr
     tyres: dict[int, RollingTyre] = {}
     for number, changes in enumerate(work.changes):
         try:
-            tyres[number] = RollingTyre(base.study.replace(changes), base)
+            tyres[number] = model.tyre(base.study.replace(changes))
         except InputError as error:
             outcomes[number] = Failed(str(error))
     numbers = list(tyres)
@@ -244,6 +310,7 @@ class Training:
         self.base = tyre_of(plan.study, self.counts)
         remember(plan.packed, self.base)
         self.snapshots: list[Snapshots] = []
+        self.cycles: LearntCycles | None = None
         self.correction_count = 0
         self.round_size = max(LEAST_CORRECTIONS, int(np.ceil(CORRECTIONS_PER_NUMBER * len(plan.varied))))
         self.sequence = qmc.Halton(len(plan.varied), seed=seed)
@@ -280,12 +347,16 @@ class Training:
         self.snapshots += [outcome.snapshots for outcome in full_runs]
         return outcomes
 
-    def correction_rounds(self, most: int, enough: float) -> ReducedModel:
-        """A model trained on corrections at new points, until the largest correction is at most ``enough`` K."""
-        for _ in range(most):
-            model = trained(self.base, self.snapshots, self.fineness)
+    def correction_rounds(self, most: int, enough: float, *, search: bool = False) -> ReducedModel:
+        """A model trained on corrections at new points, until the largest correction is at most ``enough`` K.
+
+        ``search``: from the second round on, half of the points are those with the largest estimated errors of many.
+        """
+        for number in range(most):
+            searching = search and number > 0 and self.counts is None
+            model = self._trained(further=searching)
             packed = pack(model, self.plan.packed)
-            places = self.repeated(self._stretched(self.round_size))
+            places = self.repeated(self._worst(packed) if searching else self._stretched(self.round_size))
             changes = [self.variant(place) for place in places]
             shares = [HORIZONS[n % len(HORIZONS)] for n in range(len(places))]
             firsts = range(0, len(places), CORRECTIONS_PER_TASK)
@@ -302,7 +373,45 @@ class Training:
             self.correction_count += len(outcomes)
             if max((outcome.largest for outcome in corrected), default=0.0) <= enough:
                 break
-        return trained(self.base, self.snapshots, self.fineness)
+        return self._trained(further=True)
+
+    def _trained(self, *, further: bool) -> ReducedModel:
+        return replace(trained(self.base, self.snapshots, self.fineness, further=further), cycles=self.cycles)
+
+    def learn_cycles(self, tolerance: float) -> None:
+        """Learn the strain cycles from presses, where every variant would cost one.
+
+        Where their error would change temperatures by more than the tolerance, K, every variant is pressed.
+        """
+        numbers = mechanical_numbers(self.plan.study, self.plan.varied)
+        if not numbers:
+            return
+        fields = [snapshot.fields for snapshot in self.snapshots]
+        rise = max(float(np.ptp(field)) for field in fields)
+        known: list[tuple[Array, Press]] = []
+        for _ in range(PRESS_BATCHES):
+            known += self._pressed(numbers, len(known))
+            at = np.array([place[numbers] for place, _ in known])
+            varied = [self.plan.varied[number] for number in numbers]
+            cycles = learnt(self.base, varied, at, [press for _, press in known])
+            if cycles.error * rise <= PRESS_FACTOR * tolerance:
+                self.cycles = cycles
+                return
+
+    def _pressed(self, numbers: Sequence[int], known: int) -> list[tuple[Array, Press]]:
+        """Presses at new places."""
+        places = self._stretched(press_count(len(numbers)))
+        if len(numbers) == 1:
+            # Many places of a line would lie on its ends; those of the next batch lie between those of the first.
+            even = np.linspace(0.0, 1.0, len(places))
+            for place, part in zip(places, even if not known else (even[:-1] + even[1:]) / 2, strict=False):
+                place[numbers] = part
+        tasks = [PressTask(self.plan.packed, self.variant(place), self.counts) for place in places]
+        outcomes = self._outcomes(perform_press, tasks, "pressing")
+        pressed = [(place, press) for place, press in zip(places, outcomes, strict=True) if isinstance(press, Press)]
+        if len(pressed) < len(places):
+            raise NotReducibleError(next(outcome.reason for outcome in outcomes if isinstance(outcome, Failed)))
+        return pressed
 
     def over_shapes(self, model: ReducedModel) -> ReducedModel:
         """The model with projected operators over the box's shapes, if the section varies."""
@@ -315,6 +424,21 @@ class Training:
             except InputError:
                 continue
         return with_shapes(model, studies)
+
+    def _worst(self, packed: PackedModel) -> list[Array]:
+        """New points of the unit box: half of them those with the largest estimated errors of many."""
+        some = self.round_size // 2
+        candidates = self._stretched(CANDIDATES * some)
+        firsts = range(0, len(candidates), CANDIDATES_PER_TASK)
+        tasks = [
+            CandidateTask([self.variant(place) for place in candidates[n : n + CANDIDATES_PER_TASK]]) for n in firsts
+        ]
+        parts = self._outcomes(perform_estimates, tasks, "searching", packed)
+        errors = np.concatenate([[] if isinstance(part, Failed) else part for part in parts])
+        if len(errors) < len(candidates):
+            return self._stretched(self.round_size)
+        worst = [candidates[int(n)] for n in np.argsort(errors)[::-1][:some]]
+        return worst + self._stretched(self.round_size - some)
 
     def _stretched(self, count: int) -> list[Array]:
         """New points of the unit box; many lie on its faces."""

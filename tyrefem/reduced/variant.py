@@ -73,6 +73,12 @@ class Variant:
         return getattr(self.result, name)
 
     @property
+    def estimated_error(self) -> float | None:
+        """Estimated error of the temperatures at sensors and at the hottest places, K; None: no estimate."""
+        errors = self.readout.errors
+        return None if errors is None else float(errors[self.number])
+
+    @property
     def peaks(self) -> dict[str, Peak]:
         """Highest temperature of the ``tyre`` and of every region."""
         return self.readout.peaks[self.number]

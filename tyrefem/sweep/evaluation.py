@@ -214,7 +214,10 @@ def by_model(
 def _certificate(noted: Mapping[str, Any] | None) -> SurrogateCertificate | None:
     from tyrefem.reduced.surrogate import SurrogateCertificate
 
-    return None if noted is None else SurrogateCertificate(**noted)
+    if noted is None:
+        return None
+    # What is missing comes back from a file as not a number.
+    return SurrogateCertificate(**{key: value for key, value in noted.items() if value == value and value is not None})
 
 
 class Evaluator(VariantEvaluation):

@@ -62,7 +62,7 @@ class Sweep(Brief):
     def table(self) -> pd.DataFrame:
         """A row per finished variant: its values and answers, ``by``, ``error_K``, ``feasible``, ``failure``.
 
-        ``error_K`` is the largest error of a temperature in the validation runs, 0 for a full run. ``failure`` is empty
+        ``error_K`` is the estimated error of a variant's temperatures, 0 for a full run. ``failure`` is empty
         without a failure.
         """
         import pandas as pd
@@ -85,7 +85,7 @@ class Sweep(Brief):
         outcome, values = self.outcomes[number], self.plan.row(number)
         if isinstance(outcome, Failed):
             return values | {"by": "", "error_K": None, "failure": outcome.reason}
-        error = self.certificate.error if outcome.by == "reduced" and self.certificate else 0.0
+        error = self.certificate.error_of(outcome.error) if outcome.by == "reduced" and self.certificate else 0.0
         return values | dict(outcome.answers) | {"by": outcome.by, "error_K": error, "failure": ""}
 
     def _within_limits(self, table: pd.DataFrame) -> Any:

@@ -14,6 +14,7 @@ class Answered:
     Parameters
     ----------
     answers : answer -> value; the answer's name ends in its unit. by : a full run or a reduced model.
+    error : estimated error of the temperatures, K; None: no estimate.
 
     >>> Answered({"hottest_degC": 61.5}, "reduced").entry
     {'answers': {'hottest_degC': 61.5}, 'by': 'reduced'}
@@ -21,11 +22,13 @@ class Answered:
 
     answers: Mapping[str, Any] = field(hash=False)
     by: Literal["full", "reduced"] = "full"
+    error: float | None = None
 
     @property
     def entry(self) -> dict[str, Any]:
         """As files have it."""
-        return {"answers": dict(self.answers), "by": self.by}
+        estimate = {} if self.error is None else {"error_K": self.error}
+        return {"answers": dict(self.answers), "by": self.by, **estimate}
 
 
 @dataclass(frozen=True)
@@ -62,7 +65,7 @@ def outcome_of(entry: Mapping[str, Any]) -> Outcome:
     """
     if "failure" in entry:
         return Failed(str(entry["failure"]))
-    return Answered(entry["answers"], entry.get("by", "full"))
+    return Answered(entry["answers"], entry.get("by", "full"), entry.get("error_K"))
 
 
 def answer_of(outcome: Outcome | None, name: str) -> Any:

@@ -147,16 +147,29 @@ class Varied:
         if self.values:
             return value in self.values
         try:
-            if self.nominal is not None:
-                number = _ratio(value, self.nominal)
-            else:
-                number, unit = _amount(value)
-                if unit != self.unit:
-                    number = parse(value, self.unit or "1")
+            number = self._number_of(value)
         except InputError:
             return False
         room = 1e-9 * max(abs(self.low), abs(self.high))
         return self.low - room <= number <= self.high + room
+
+    def _number_of(self, value: Any) -> float:
+        """The number of a written value in `unit`, or its factor."""
+        if self.nominal is not None:
+            return _ratio(value, self.nominal)
+        number, unit = _amount(value)
+        return number if unit == self.unit else parse(value, self.unit or "1")
+
+    def place_of(self, value: Any) -> float:
+        """The point of [0, 1] of a value within a continuous range: the inverse of `at`.
+
+        >>> Varied("drive.speed", "mph", low=10.0, high=40.0).place_of("25 mph")
+        0.5
+        """
+        number = self._number_of(value)
+        if self.log:
+            return math.log(number / self.low) / math.log(self.high / self.low)
+        return (number - self.low) / (self.high - self.low)
 
     @property
     def grid(self) -> list[Any]:

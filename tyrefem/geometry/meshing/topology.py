@@ -166,7 +166,7 @@ class Topology(PickledFields):
 
     @functools.cached_property
     def _grids(self) -> Cache[tuple[Array, Array]]:
-        return Cache(size=4)
+        return Cache(size=64)
 
     def _grid_of(self, section: Section) -> tuple[Array, Array]:
         span, share, layer, within = self._shares
