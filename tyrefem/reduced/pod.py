@@ -59,8 +59,8 @@ def further_modes(V: Array, snapshots: Array, weight: Array, tolerance: float, m
     values, left = np.maximum(values[::-1], 0.0), left[:, ::-1]
     left_out = np.sqrt(np.append(np.cumsum(values[::-1])[::-1], 0.0) / len(snapshots))
     count = min(int(np.argmax(left_out <= tolerance)), most, int((values > 1e-13 * max(values[0], 1e-300)).sum()))
-    found = rest.T @ left[:, :count] / np.sqrt(values[:count])
-    return np.asarray(orthonormal(found - rows @ (rows.T @ found)) / root[:, None])
+    beyond = rest.T @ left[:, :count] / np.sqrt(values[:count])
+    return np.asarray(orthonormal(beyond - rows @ (rows.T @ beyond)) / root[:, None])
 
 
 def orthonormal(X: Array) -> Array:
