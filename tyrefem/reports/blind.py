@@ -45,7 +45,8 @@ def picture(blind: Blind) -> Figure:
     drawn = figure(10.6, TITLE + left + below + 1.6)
     axes = add_axes(drawn, 3.9, below + 1.4, 2.6, left)
     _rates(axes, rates)
-    _reliability(add_axes(drawn, 7.6, below + 1.4 + max(left - 2.6, 0.0), 2.6, min(left, 2.6)), blind)
+    if blind.reliability:
+        _reliability(add_axes(drawn, 7.6, below + 1.4 + max(left - 2.6, 0.0), 2.6, min(left, 2.6)), blind)
     if effects:
         _effects(add_axes(drawn, 3.9, 0.55, 6.3, below), effects)
     data = "data of another model, " if blind.data_model == "structural" else ""
