@@ -29,7 +29,7 @@ Array = NDArray[np.float64]
 NEAR, ROUGH = 1.05, CylinderChoice(tolerance=1e-3)
 #: Tyres in the cylinder by inflated tyre, deflection and start; studies with the same inflated tyre share them.
 _FLATTENED: Cache[Flattened] = Cache(size=32)
-#: The same at rounded pressures and deflections.
+#: The same at rounded values, by tyre, pressure, deflection and start.
 _ROUGH: Cache[Flattened] = Cache(size=32)
 
 
@@ -96,15 +96,21 @@ def provider(study: StudyData) -> Callable[[LoadCase], StrainCycle]:
     from tyrefem.mechanics.solid.flattening import flatten
 
     solved: dict[float, list[Flattened]] = {}
-    inflated = pressed_tyre(study).inflated
+    pressed = pressed_tyre(study)
+    inflated = pressed.inflated
 
     def rough(pressure: float, deflection: float) -> Flattened | None:
         """The tyre at rounded values; None if it cannot take them."""
+        known = solved.setdefault(pressure, [])
+        less = [state for state in known if state.deflection <= deflection]
+        start = max(less, key=lambda state: state.deflection, default=None)
+
+        def pressed_so() -> Flattened:
+            return flatten(inflated(pressure), deflection, start, ROUGH)
+
         try:
-            tyre, known = inflated(pressure), solved.setdefault(pressure, [])
-            less = [state for state in known if state.deflection <= deflection]
-            start = max(less, key=lambda state: state.deflection, default=None)
-            known.append(_ROUGH.get((tyre, deflection, start), lambda: flatten(tyre, deflection, start, ROUGH)))
+            # The tyre may have been inflated to many other pressures since.
+            known.append(_ROUGH.get((pressed, pressure, deflection, start), pressed_so))
         except InputError:
             return None
         return known[-1]
