@@ -53,6 +53,27 @@ def test_numbers_in_the_page_equal_those_of_python(numbers_of_the_page: tuple[An
 
 
 @pytest.mark.usefixtures("needs_chromium")
+def test_every_number_has_the_certificate_s_error_beside_it(page: str, explored: Exploration) -> None:
+    """Bars with their sums, readings now and highest, tiles."""
+    shown = result_in_browser(page, script("errors"))
+    errors = explored.certificate.errors
+    bars = {label: (value, error) for label, value, error in shown["bars"]}
+    for label, name in (
+        ("Generated", "generated"),
+        ("Lost and stored", "lost and stored"),
+        ("tread", "generated: tread"),
+    ):
+        value, error = bars[label]
+        assert value.endswith(" W")
+        assert float(error.removeprefix("± ")) == pytest.approx(errors[name], rel=0.5)
+    assert [label for label, (value, error) in bars.items() if value and not error.startswith("± ")] == []
+    assert len(shown["readings"]) >= 3
+    assert [row for row in shown["readings"] if not all(float(cell) > 0 for cell in row[1:5])] == []
+    assert all("±" in tile for tile in shown["tiles"])
+    assert shown["tiles"][2].count("±") == 2  # rolling resistance and its coefficient
+
+
+@pytest.mark.usefixtures("needs_chromium")
 def test_the_picture_shows_the_field(numbers_of_the_page: tuple[Any, Any], explored: Exploration) -> None:
     """Its modes are integers of 16 bits: a few thousandths of a kelvin."""
     size, turn = explored.reduced.size, explored.arrays["turn"]
