@@ -48,7 +48,7 @@ def estimated_errors(solution: BatchSolution) -> Array | None:
         times = start + PARTS * (end - start) * (1 - 1e-9)
         states, slopes = solution.states(times), solution.slopes(times)
         moments = [batch.boundary_data(float(t)) for t in times]
-        A = K + np.einsum("bj,bjmn->bmn", moments[2].films, np.broadcast_to(films, (len(K), *films.shape[1:])))
+        A = K + _combined(moments[2].films, films)
         right = np.empty((*K.shape[:2], len(times)))
         for i, moment in enumerate(moments):
             y, rate = (_embedded(each[i], m, size) for each in (states, slopes))
@@ -58,17 +58,20 @@ def estimated_errors(solution: BatchSolution) -> Array | None:
             heat[:, :size] += (source_load @ q)[:, :, 0]
             changed = moment.films - moments[2].films
             if changed.any():
-                heat -= np.einsum(
-                    "bj,bjm->bm",
-                    changed,
-                    np.einsum("bjmn,bn->bjm", np.broadcast_to(films, (len(K), *films.shape[1:])), y),
-                )
+                heat -= _times(_combined(changed, films), y)
             right[:, :, i] = heat - _times(A, y) - _times(M, rate)
         step = np.linalg.solve(M / (TAU * (end - start)) + A, right)
         for b, change in enumerate(step):
             at = places[b if len(places) > 1 else 0] @ change[:size]
             largest[b] = max(largest[b], float(np.abs(at).max()), float(np.abs(change[size:]).max(initial=0.0)))
     return SAFETY_FACTOR * largest
+
+
+def _combined(coefficients: Array, matrices: Array) -> Array:
+    """(B, n, n) sums of exchange matrices (1 or B, j, n, n) with coefficients (B, j)."""
+    if len(matrices) == 1:
+        return np.asarray(np.tensordot(coefficients, matrices[0], axes=1))
+    return np.array([np.tensordot(h, each, axes=1) for h, each in zip(coefficients, matrices, strict=True)])
 
 
 def _films(balance: ReducedBalance) -> Array:
