@@ -40,7 +40,10 @@ def explore(
         str | None, typer.Option(metavar="KEY,KEY", help="Numbers of the safe envelope; default: load and speed.")
     ] = None,
     tolerance: Annotated[
-        str | None, typer.Option(help="Largest temperature error that the certificate allows; default: 0.3 K.")
+        str | None,
+        typer.Option(
+            help="Largest temperature error that the certificate allows; default: 0.3 K, with footprint FEM 1 K."
+        ),
     ] = None,
     changes: SetOption = None,
     case: CaseOption = None,

@@ -51,7 +51,9 @@ FINENESSES = (1, 2)
 #: Settings at which the places of the hottest nodes are searched.
 SEARCHED = 60
 #: Cost: equivalent full runs of training, certificate and search, and strain cycles by finite elements.
-RUNS, CYCLES = 16.0, 45.0
+RUNS, CYCLES = 16.0, 20.0
+#: K: footprints by finite elements differ by up to 2 % with their number of harmonics, which depends on the load.
+PRESSED_TOLERANCE = 1.0
 #: Requirements of an exploration on a study.
 NEEDS = Requirements("an exploration")
 
@@ -142,7 +144,21 @@ def explored(
     for key in pair or ():
         if key not in keys:
             raise InputError(f"'{key}' does not vary{nearest(key, keys)}", field="axes")
-    return box_model(plan, axes=pair, tolerance=tolerance or choice.tolerance, scheduler=scheduler, progress=progress)
+    return box_model(
+        plan, axes=pair, tolerance=tolerance or default_tolerance(study), scheduler=scheduler, progress=progress
+    )
+
+
+def default_tolerance(study: StudyData) -> float:
+    """Allowed error of the temperatures, K: that of the study's ``[explore]``; else 0.3, or `PRESSED_TOLERANCE`.
+
+    >>> import tyrefem
+    >>> [default_tolerance(tyrefem.study(name)) for name in ("nasa-22x5.5-8pr", "passenger-205-55r16")]
+    [0.3, 1.0]
+    """
+    choice = study.card.explore
+    chosen = "tolerance" in choice.model_fields_set
+    return PRESSED_TOLERANCE if strain_law(study).by_elements and not chosen else choice.tolerance
 
 
 def box_model(
