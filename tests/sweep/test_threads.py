@@ -75,7 +75,7 @@ class Named:
 
 def test_every_thread_gets_the_tyre_of_its_own_study(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(training_rounds, "unpacked", lambda packed: packed)
-    monkeypatch.setattr(training_rounds, "RollingTyre", lambda packed: f"tyre of {packed.name}")
+    monkeypatch.setattr(training_rounds, "tyre_of", lambda packed, counts: f"tyre of {packed.name}")
     begin = threading.Barrier(8)
 
     def wrong(number: int) -> int:
