@@ -25,7 +25,7 @@ from tyrefem.diagnose.selection import SelectionProblem
 from tyrefem.diagnose.settings import DEFAULT
 from tyrefem.diagnose.shared_error import SharedError
 from tyrefem.diagnose.unknowns import Unknown, with_values
-from tyrefem.diagnose.verdict import PARTLY, UNEXPLAINED, judge, ranked
+from tyrefem.diagnose.verdict import PARTLY, UNEXPLAINED, Judgement, judge, ranked
 from tyrefem.inputs.name_patterns import SCALES
 
 NO_EFFECTS = cast(Any, type("Study", (), {"card": type("Card", (), {"effects": ()})}))
@@ -55,14 +55,23 @@ def measured(hot: float) -> Case:
     return case(law, readings, EVERY, SETTINGS, further=(*SHAPES, GAUGE))
 
 
+def selection(data: Case) -> SelectionProblem:
+    prior = SetPrior(EVERY, 0.5, SETTINGS.size_shares)
+    return SelectionProblem(data.residuals, data.predictions, EVERY, prior, LogEvidence())
+
+
+def searched(data: Case) -> tuple[SelectionProblem, Judgement, Robustness]:
+    """The sets beside every discrepancy model, as if no set explained the data."""
+    problem = selection(data)
+    scored = problem.settled(ForwardSelection().search(problem))
+    judgement = replace(judge(ranked(scored), lambda members: None, SETTINGS), verdict=UNEXPLAINED)
+    return problem, judgement, robustness(problem, scored, certain=False, explained=False)
+
+
 @pytest.mark.parametrize("hot", [25.0, 0.0])
 def test_an_effect_is_named_beside_gauges_and_films_that_differ_too(hot: float) -> None:
     data = measured(hot)
-    prior = SetPrior(EVERY, 0.5, SETTINGS.size_shares)
-    problem = SelectionProblem(data.residuals, data.predictions, EVERY, prior, LogEvidence())
-    scored = problem.settled(ForwardSelection().search(problem))
-    judgement = replace(judge(ranked(scored), lambda members: None, SETTINGS), verdict=UNEXPLAINED)
-    robust = robustness(problem, scored, certain=False, explained=False)
+    problem, judgement, robust = searched(data)
     leading = robust.models[0]
     assert leading.name == ENERGY
     assert FURTHER in leading.words
@@ -84,17 +93,15 @@ def test_an_effect_is_named_beside_gauges_and_films_that_differ_too(hot: float) 
     (alone,) = first_fits(data.residuals, data.predictions, [revision.members])
     fit = fit_beside(problem, leading, alone)
     assert abs(fit.values[FILM.amplitudes[0]] + 0.4) < 3 * sd
+    bare = fit_beside(problem, replace(leading, fits={}), alone)
+    assert abs(bare.values[FILM.amplitudes[0]] + 0.4) < 3 * sd
     assert leading.discrepancy is not None
     assert without(leading.discrepancy, FILM.amplitudes).further == (GAUGE,)
 
 
 def test_a_film_without_whose_law_held_out_runs_are_predicted_better_is_not_named() -> None:
     data = measured(25.0)
-    prior = SetPrior(EVERY, 0.5, SETTINGS.size_shares)
-    problem = SelectionProblem(data.residuals, data.predictions, EVERY, prior, LogEvidence())
-    scored = problem.settled(ForwardSelection().search(problem))
-    judgement = replace(judge(ranked(scored), lambda members: None, SETTINGS), verdict=UNEXPLAINED)
-    robust = robustness(problem, scored, certain=False, explained=False)
+    _, judgement, robust = searched(data)
     leading = robust.models[0]
     fits = {part: replace(fit, held_out=-50.0 if HOT in part else -60.0) for part, fit in leading.fits.items()}
     for without_film, named in ((-52.0, (HOT, FILM)), (-48.0, (HOT,))):
@@ -106,8 +113,7 @@ def test_a_film_without_whose_law_held_out_runs_are_predicted_better_is_not_name
 
 def test_a_set_is_fitted_from_a_larger_one_whose_further_effect_is_zero() -> None:
     data = measured(25.0)
-    prior = SetPrior(EVERY, 0.5, SETTINGS.size_shares)
-    problem = SelectionProblem(data.residuals, data.predictions, EVERY, prior, LogEvidence())
+    problem = selection(data)
     beside = RankedBeside(problem, Discrepancy(NONE, 0.0))
     (whole,) = first_fits(data.residuals, data.predictions, [(HOT, COLD)])
     beside._take([whole])

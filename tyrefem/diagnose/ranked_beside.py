@@ -340,8 +340,7 @@ def robustness(
     unfinished = [beside for name, sizes in ranked.items() if name in probable or not certain for beside in sizes]
     for beside in unfinished:
         beside.further()
-    last = result() if unfinished else first
-    return last if certain else _with_held_out(problem, last)
+    return _with_held_out(problem, result() if unfinished else first)
 
 
 def _with_held_out(problem: SelectionProblem, robust: Robustness) -> Robustness:
@@ -445,11 +444,11 @@ def fit_beside(problem: SelectionProblem, model: UnderDiscrepancy, fit: FittedSe
     others = problem.ordered(tuple(member for member in fit.members if member not in members))
     start = _nearest(model.fits, others, lambda part: model.fits[part].log_evidence)
     here, joining, predictions = model.residuals, members, problem.predictions
-    if model.discrepancy is None or start is None or not set(others) <= set(start.members):
-        start, joining = fit, ()
-    elif members:
+    if members and model.discrepancy is not None:
         left = without(model.discrepancy, [member.amplitudes[0] for member in members])
         here = replace(here, shared_error=left.shared_error)
+    if start is None or not set(others) <= set(start.members):
+        start, joining = fit, ()
     first = known
     if first is None:
         (first,) = fitted_beside(predictions, [(start, here)], problem._count, joining)
