@@ -224,10 +224,13 @@ def with_single_plies(wheel: WheelOnRoad) -> WheelOnRoad:
 
 
 def slopes() -> None:
-    """Slopes of slip with both kinds of belts."""
+    """Slopes of slip with both kinds of belts; in large motion friction moves the tread as the inflated tyre's."""
     rows = []
     for motion, angle, load in itertools.product(("linear", "large"), (20,), LOADS):
         wheel = wheel_on_road(study_at(angle), load=load, friction=1.0, motion=motion)
+        if wheel.rolling.shape is not None:
+            inflated = replace(wheel.rolling.shape, loaded=None)
+            wheel = replace(wheel, rolling=replace(wheel.rolling, shape=inflated))
         for belts, rolling in (("averaged", wheel), ("crossed", with_single_plies(wheel))):
             made = slip_stiffness(rolling, HARMONICS)
             rows.append({

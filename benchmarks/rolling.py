@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import argparse
 import csv
-import itertools
 import math
 import os
 import tempfile
@@ -266,21 +265,21 @@ def large() -> None:
 
 
 def belt_angle() -> None:
-    """Write slopes of slip, trail, deflection and growth by spin over the angle of the belts' cords."""
+    """Write slopes of slip, trail, deflection and growth by spin over the angle of the belts' cords, linear motion."""
     with (TABLES / "rolling-belt-angle.csv").open("w", encoding="utf-8", newline="") as stream:
         table = csv.writer(stream, lineterminator="\n")
         table.writerow([
-            "belt angle [deg]", "motion", "load [N]", "cornering stiffness [kN/rad]", "slip stiffness [kN]",
+            "belt angle [deg]", "load [N]", "cornering stiffness [kN/rad]", "slip stiffness [kN]",
             "trail [mm]", "deflection [mm]", "length [mm]", "growth of radius by spin [mm]",
         ])  # fmt: skip
-        for angle, motion in itertools.product(BELT_ANGLES, ("linear", "large")):
+        for angle in BELT_ANGLES:
             cords = {f"materials.belt-{ply}.cords.angle": f"{angle} deg" for ply in (1, 2)}
             study = tf.study(STUDY).replace({"mesh.size": "10 mm", **cords})
             spinning = study.replace({"mechanics.rolling": True}).press(motion="linear")
             for load in BELT_LOADS:
-                wheel = wheel_on_road(study, load=load, friction=1.0, motion=motion)
+                wheel = wheel_on_road(study, load=load, friction=1.0)
                 slopes, contact = slip_stiffness(wheel, HARMONICS), wheel.pressed.footprint
-                words = [str(angle), motion, f"{load:g}", f"{slopes.cornering / 1e3:.1f}", f"{slopes.slip / 1e3:.1f}",
+                words = [str(angle), f"{load:g}", f"{slopes.cornering / 1e3:.1f}", f"{slopes.slip / 1e3:.1f}",
                          f"{1e3 * slopes.trail:.1f}", f"{1e3 * contact.deflection:.1f}", f"{1e3 * contact.length:.0f}",
                          f"{1e3 * spinning.turning.centrifugal_growth:.2f}"]  # fmt: skip
                 table.writerow(words)

@@ -1,11 +1,12 @@
 """Slopes of slip of the measured 205/60R15 in large motion: blocks of the tread, and bands from uncertain numbers.
 
-    python benchmarks/rolling_bands.py [--blocks] [--sensitivities] [--bands] [--picture]
+    python benchmarks/rolling_bands.py [--blocks] [--inflated] [--cords] [--sensitivities] [--bands] [--picture]
 
 Writes docs/evidence/tables/rolling-blocks.csv (a solid tread and one with transverse grooves and sipes, over load),
-rolling-sensitivities.csv (each uncertain number one standard deviation away, on a coarse mesh) and, from both,
-rolling-bands.csv beside the measured values; docs/pictures/rolling-bands.png. Rows that a table has are not computed
-again. Nothing is fitted.
+rolling-inflated.csv (the solid tread, where friction moves it as the inflated tyre), rolling-cords.csv (strains of
+cords in the footprint), rolling-sensitivities.csv (each uncertain number one standard deviation away, on a coarse mesh)
+and rolling-bands.csv beside the measured values; docs/pictures/rolling-bands.png. Rows that a table has are not
+computed again. Nothing is fitted.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ import math
 import os
 import time
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -52,6 +54,8 @@ CHOSEN = (
     "modulus of the tread", "modulus of the layers' rubber", "modulus of sidewall and chafer", "tread radius",
     "shoulder width", "tread gauge",
 )  # fmt: skip
+#: Regions whose cords are looked at, and distance from the mid plane, m.
+CROWN, MIDDLE = ("body-ply", "belt-1", "belt-2", "cap-ply"), 0.015
 #: Coefficient of friction. Uncertainty of the numbers: slopes change by 1 to 5 % with mesh and harmonics.
 FRICTION, NUMERICAL = 1.0, 0.05
 #: Standard uncertainty of measured slopes and trails, an estimate: the file gives none.
@@ -85,9 +89,11 @@ def angles() -> Iterator[tuple[str, str, dict[str, Any]]]:
         yield "angle of the belts' cords", words, {f"materials.belt-{ply}.cords.angle": angle for ply in (1, 2)}
 
 
-def slopes(study: Any, load: float, motion: str) -> dict[str, float]:
-    """Cornering and slip stiffness and trail."""
+def slopes(study: Any, load: float, motion: str, inflated: bool = False) -> dict[str, float]:
+    """Cornering and slip stiffness and trail; ``inflated``: with the compliance of the inflated tyre."""
     wheel = wheel_on_road(study, load=load, friction=FRICTION, motion=motion)
+    if inflated:
+        wheel = replace(wheel, rolling=replace(wheel.rolling, shape=replace(wheel.rolling.shape, loaded=None)))
     made, contact = slip_stiffness(wheel, HARMONICS), wheel.pressed.footprint
     return {
         "cornering stiffness [kN/rad]": made.cornering / 1e3,
@@ -105,13 +111,15 @@ class Rows:
         self.path = TABLES / f"{name}.csv"
         self.rows = rows_of(self.path) if self.path.is_file() else []
 
-    def add(self, keys: Mapping[str, Any], study: Any, load: float, motion: str = "large") -> None:
+    def add(
+        self, keys: Mapping[str, Any], study: Any, load: float, motion: str = "large", inflated: bool = False
+    ) -> None:
         """Append keys and slopes, unless a row has these keys."""
         cells = text_of(keys)
         if any(cells.items() <= row.items() for row in self.rows):
             return
         began = time.process_time()
-        self.rows.append({**cells, **text_of(slopes(study, load, motion))})
+        self.rows.append({**cells, **text_of(slopes(study, load, motion, inflated))})
         write(self.path, self.rows)
         print(*self.rows[-1].values(), f"{time.process_time() - began:.0f} s", flush=True)
 
@@ -129,6 +137,35 @@ def blocks() -> None:
     table, study = Rows("rolling-blocks"), tf.study(STUDY, {"mesh.size": FINE})
     for (tread, changes), load in itertools.product((("solid", {}), ("blocks", BLOCKS)), LOADS):
         table.add({"load [N]": f"{load:g}", "tread": tread}, study.replace(changes), load)
+
+
+def inflated() -> None:
+    """A solid tread that friction moves as that of the inflated tyre, at every measured load."""
+    table, study = Rows("rolling-inflated"), tf.study(STUDY, {"mesh.size": FINE})
+    for load in LOADS:
+        table.add({"load [N]": f"{load:g}"}, study, load, inflated=True)
+
+
+def cords() -> None:
+    """Strain of the crown's cords: inflated, and in the middle of the footprint."""
+    study, rows = tf.study(STUDY, {"mesh.size": "10 mm", "mechanics.motion": "large"}), []
+    for load in LOADS[::2]:
+        pressed = study.press(load=load)
+        body, deformation = pressed.tyre.body, pressed.tyre.deformation
+        for region in CROWN:
+            members = np.asarray(body.mesh.subdomains[region])
+            middle = np.abs(body.rings.points[1][members].mean(axis=-1)) < MIDDLE
+            layer = body.parts[region].cords[0]
+            stretch = layer.stretch(deformation[:, :, members])
+            carried = np.einsum("ij...,j...->i...", deformation[:, :, members], layer.directions[0]) / stretch
+            strain = pressed.cycle.along(carried, np.zeros(1), members)[..., 0]
+            under = stretch * np.sqrt(1 + 2 * strain) - 1
+            rows.append({
+                "load [N]": f"{load:g}", "region": region, "inflated [%]": f"{100 * (stretch[middle].mean() - 1):.3f}",
+                "in the footprint [%]": f"{100 * under[middle].mean():.3f}",
+            })  # fmt: skip
+            print(*rows[-1].values(), flush=True)
+    write(TABLES / "rolling-cords.csv", rows)
 
 
 def sensitivities() -> None:
@@ -224,7 +261,14 @@ def picture() -> None:
 def main() -> None:
     """Run the parts that are named, or all."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parts = {"blocks": blocks, "sensitivities": sensitivities, "bands": bands, "picture": picture}
+    parts = {
+        "blocks": blocks,
+        "inflated": inflated,
+        "cords": cords,
+        "sensitivities": sensitivities,
+        "bands": bands,
+        "picture": picture,
+    }
     for name in parts:
         parser.add_argument(f"--{name}", action="store_true")
     chosen = vars(parser.parse_args())

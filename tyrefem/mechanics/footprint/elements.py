@@ -106,12 +106,14 @@ class WheelAngles:
     """Angles from 0 to pi for harmonics (u_r cos n t, u_z cos n t, u_t sin n t) up to ``highest``.
 
     The number of angles is 3/2 ``highest`` + 1: products of two harmonics are not aliased to lower ones.
-    ``precision``: of values, gradients and forces.
+    ``precision``: of values, gradients and forces. ``odd``: (u_r sin n t, u_z sin n t, -u_t cos n t), odd about the
+    lowest point.
     """
 
     elements: SectionElements
     highest: int
     precision: type = float
+    odd: bool = False
 
     @functools.cached_property
     def _single(self) -> WheelAngles:
@@ -132,7 +134,10 @@ class WheelAngles:
         n = np.arange(self.highest + 1)
         phase = np.multiply.outer(self.angles, n)
         cos, sin = np.cos(phase), np.sin(phase)
-        value, slope = np.stack([cos, cos, sin]), np.stack([-n * sin, -n * sin, n * cos])
+        if self.odd:
+            value, slope = np.stack([sin, sin, -cos]), np.stack([n * cos, n * cos, n * sin])
+        else:
+            value, slope = np.stack([cos, cos, sin]), np.stack([-n * sin, -n * sin, n * cos])
         return value.astype(self.precision), slope.astype(self.precision)
 
     @functools.cached_property

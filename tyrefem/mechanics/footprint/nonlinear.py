@@ -51,16 +51,18 @@ class NonlinearForces:
     harmonics : the linear problem about the state.
     highest : harmonics of the motion.
     law : stress; by default that of the state, or linear in Green's strain if the state has none.
+    odd : motions odd about the lowest point (`WheelAngles`).
     """
 
     harmonics: Harmonics
     highest: int
     law: FiniteLaw | None = None
+    odd: bool = False
 
     @functools.cached_property
     def round(self) -> WheelAngles:
         """Angles at which stress and pressure are evaluated."""
-        return WheelAngles(self.harmonics.elements, self.highest)
+        return WheelAngles(self.harmonics.elements, self.highest, odd=self.odd)
 
     @functools.cached_property
     def _law(self) -> FiniteLaw:

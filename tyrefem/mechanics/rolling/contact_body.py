@@ -32,7 +32,8 @@ class ContactBody:
     before : (k,) share of the last step before the material of a point touched. In that share it moved over the road
         as in the step before; this does not count as slip. None: zero.
     axes : (k, 3, 3) turn from the axes of the compliance to those of each point; None: they are the same.
-    common : (k, 3) a motion g that all points share: forces f move them by g (g . f) more, m/sqrt(N m). None: none.
+    common : (k, 3, n) motions g that all points share, and their weights (n, n): forces f move the points by the sum
+        over i, j of g_i weights_ij (g_j . f) more. None: none.
     """
 
     compliance: Array
@@ -40,7 +41,7 @@ class ContactBody:
     turns: Array | None = None
     before: Array | None = None
     axes: Array | None = None
-    common: Array | None = None
+    common: tuple[Array, Array] | None = None
 
     @property
     def n_points(self) -> int:
@@ -62,7 +63,8 @@ class ContactBody:
             turned = turned.transpose(1, 0, 2) @ self.axes[columns].transpose(0, 2, 1)
             block = turned.transpose(1, 0, 2).reshape(n, COMPONENTS, m, COMPONENTS)
         if self.common is not None:
-            block = block + np.multiply.outer(self.common[rows], self.common[columns])
+            motions, weights = self.common
+            block = block + np.tensordot(motions[rows] @ weights, motions[columns], axes=(2, 2))
         return np.asarray(block)
 
     @functools.cached_property
@@ -119,7 +121,10 @@ class ContactBody:
         moved = self.compliance.reshape(size, size)[:, columns] @ turned.ravel()[columns]
         moved = moved.reshape(-1, COMPONENTS)
         moved = moved if self.axes is None else np.einsum("kax,kx->ka", self.axes, moved)
-        return np.asarray(moved if self.common is None else moved + self.common * float((self.common * forces).sum()))
+        if self.common is None:
+            return np.asarray(moved)
+        motions, weights = self.common
+        return np.asarray(moved + motions @ (weights @ np.tensordot(motions, forces, axes=((0, 1), (0, 1)))))
 
     def change(self, values: Array) -> Array:
         """(k, 2) change in the road's plane, from the point upstream to the point, of vectors (k, 3)."""

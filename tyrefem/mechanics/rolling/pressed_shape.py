@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from tyrefem.brief import Brief
 from tyrefem.mechanics.footprint.elements import COMPONENTS
 from tyrefem.mechanics.footprint.footprint import Footprint
+from tyrefem.mechanics.rolling.loaded_compliance import LoadedCompliance
 from tyrefem.mechanics.rolling.tread_influence import MIRROR, TreadInfluence
 
 Array = NDArray[np.float64]
@@ -29,14 +30,19 @@ class PressedShape(Brief):
     u is the derivative by f of C f . f/2 + max over s of f . d(t + s), which does not change where f turns round the
     wheel. So the work of a revolution on an elastic tyre vanishes, as it must (`SteadyRolling`).
 
+    The pressed tyre is softer or stiffer than the inflated one by D (`LoadedCompliance`). D turns with the shape and
+    acts on what friction adds to its forces f0: D (f - f0(t + s)) more.
+
     Parameters
     ----------
     footprint : the upright tyre without friction. elastic : C of its points without loss, where the rolling tyre has
         loss: the footprint has none; None: that of the rolling tyre.
+    loaded : D; None: none.
     """
 
     footprint: Footprint
     elastic: TreadInfluence | None = None
+    loaded: LoadedCompliance | None = None
 
     def offsets(self, influence: TreadInfluence, harmonics: int, angles: Array, kernel: Array) -> Array:
         """(n_angles, 3, m) d of the points of the whole tread along (r, z, t), averaged with the hats, m.

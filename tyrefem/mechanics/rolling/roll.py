@@ -16,6 +16,8 @@ from tyrefem.inputs.study_plugins import plugin_summary
 from tyrefem.mechanics.footprint.compliance import TreadCompliance
 from tyrefem.mechanics.footprint.contact import LADDER
 from tyrefem.mechanics.footprint.press import Pressed
+from tyrefem.mechanics.rolling.loaded_compliance import LoadedCompliance
+from tyrefem.mechanics.rolling.loaded_tyre import TyreOnFootprint
 from tyrefem.mechanics.rolling.press import press
 from tyrefem.mechanics.rolling.pressed_shape import PressedShape
 from tyrefem.mechanics.rolling.rolled import RolledTyre
@@ -236,7 +238,8 @@ def wheel_on_road(
     rolling = SteadyRolling(pressed.pressing, camber, law, _lossy_points(pressed))
     if pressed.balanced:
         elastic = TreadInfluence(pressed.pressing.tread) if rolling.points.lossy else None
-        rolling = replace(rolling, shape=PressedShape(pressed.footprint, elastic))
+        loaded = LoadedCompliance(TyreOnFootprint(pressed.footprint, elastic or rolling.points))
+        rolling = replace(rolling, shape=PressedShape(pressed.footprint, elastic, loaded))
     return WheelOnRoad(pressed, rolling, load, deflection, speed or pressed.speed or 1.0)
 
 

@@ -201,14 +201,34 @@ class RolledTyre(Brief):
 
     @functools.cached_property
     def added_fields(self) -> SectionFields:
-        """`fields`; beside a pressed shape, what they add to it: less the motion without loss under its forces."""
+        """`fields`; beside a pressed shape, what they add to it: less the motion without loss under its forces, and
+        with that of the loaded tyre."""
         shape, forces = self.grid.shape, self.grid.shape_forces
         if shape is None or forces is None:
             return self.fields
         pressed = np.moveaxis(forces, 1, 2)
         if shape.elastic is None:
-            return SectionFields.of(self.grid, self.components - pressed, self.deflection)
-        return replace(self.fields, less=SectionFields.of(self.grid.under(shape.elastic), pressed))
+            return self._beside(SectionFields.of(self.grid, self.components - pressed, self.deflection), 1.0)
+        less = SectionFields.of(self.grid.under(shape.elastic), pressed)
+        return replace(self.fields, less=self._beside(less, -1.0))
+
+    def _beside(self, fields: SectionFields, sign: float) -> SectionFields:
+        """Fields with ``sign`` times what the loaded tyre adds to the motion of the inflated one."""
+        shape, forces = self.grid.shape, self.grid.shape_forces
+        if shape is None or shape.loaded is None or forces is None or not shape.loaded.known:
+            return fields
+        loaded = shape.loaded
+        n = np.arange(len(loaded.tyre.motion))
+        sides = 1 if fields.antisymmetric is None else 2
+        loads = np.zeros((sides, len(n), *fields.loads.shape[1:]), dtype=complex)
+        motions = np.zeros((sides, *loaded.tyre.motion.shape), dtype=complex)
+        points = self.grid.points_on_wheel()
+        for family, taken, motion in loaded.section_motions(points, np.moveaxis(self.components, 2, 1) - forces):
+            # An odd wave, (sin, sin, -cos), is an even one a quarter of it further.
+            turn = sign * np.exp(1j * n * self.grid.turn) * (-1j if family.odd else 1)
+            loads[int(family.antisymmetric)] += turn[:, None, None] * taken
+            motions[int(family.antisymmetric)] += turn[:, None] * motion
+        return fields.beside(tuple(loads), tuple(motions))
 
     @functools.cached_property
     def body_loss(self) -> BodyLoss:

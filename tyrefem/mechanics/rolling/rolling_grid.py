@@ -14,6 +14,8 @@ from tyrefem.brief import Brief
 from tyrefem.mechanics.footprint.elements import COMPONENTS
 from tyrefem.mechanics.footprint.road import Road
 from tyrefem.mechanics.rolling.contact_body import NOWHERE
+from tyrefem.mechanics.rolling.loaded_compliance import LoadedCompliance
+from tyrefem.mechanics.rolling.points_on_wheel import PointsOnWheel
 from tyrefem.mechanics.rolling.pressed_shape import PressedShape
 from tyrefem.mechanics.rolling.tread_influence import TreadInfluence
 
@@ -96,6 +98,13 @@ class RollingGrid(Brief):
         grid._kept.update(self._kept)
         return grid
 
+    def loaded(self, compliance: LoadedCompliance) -> RollingGrid:
+        """The same points with another compliance of the pressed shape."""
+        assert self.shape is not None
+        grid = replace(self, shape=replace(self.shape, loaded=compliance))
+        grid._kept.update((name, kept) for name, kept in self._kept.items() if name != "shape")
+        return grid
+
     @functools.cached_property
     def areas(self) -> Array:
         """(k,) tributary area of a point, m2."""
@@ -112,7 +121,8 @@ class RollingGrid(Brief):
         return axes
 
     def shape_at(self, shift: float) -> Array:
-        """(n_angles, 3, m) what the pressed shape adds along (r, z, t) at angles + ``turn`` + ``shift``, m."""
+        """(n_angles, 3, m) what the pressed shape adds along (r, z, t) at angles + ``turn`` + ``shift``, m: d less what
+        its own forces move it by D."""
         assert self.shape is not None
         if "shape" not in self._kept:
             from scipy.interpolate import CubicSpline
@@ -121,8 +131,31 @@ class RollingGrid(Brief):
             angles = self.step * np.arange(self.first - beyond, self.last + beyond + 1, dtype=float)
             kernel = self.influence.kernel(self.harmonics, len(angles))
             added = self.shape.offsets(self.influence, self.harmonics, angles, kernel)
+            if self.shape.loaded is not None:
+                forces = self.shape.forces(self.influence, self.harmonics, angles)
+                motions = self.shape.loaded.motions(PointsOnWheel(self.influence, self.harmonics, angles))
+                shares = self.shape.loaded.weights @ np.tensordot(forces, motions, axes=3)
+                added = added - motions @ shares
             self._kept["shape"] = CubicSpline(angles, added)
         return np.asarray(self._kept["shape"](self.angles + self.turn + shift))
+
+    def points_on_wheel(self, shift: float = 0.0) -> PointsOnWheel:
+        """The points at angles + ``turn`` + ``shift``: those of the pressed shape."""
+        return PointsOnWheel(self.influence, self.harmonics, self.angles + self.turn + shift)
+
+    def motions_at(self, shift: float) -> Array:
+        """(k, 3, n) motions of `LoadedCompliance`, (x, y, z), turned as the shape and by ``shift``, m."""
+        assert self.shape is not None
+        assert self.shape.loaded is not None
+        motions = self.shape.loaded.motions(self.points_on_wheel(shift))
+        return np.asarray(np.einsum("jcx,jcpn->jpxn", self.wheel_axes, motions).reshape(self.n_points, COMPONENTS, -1))
+
+    @functools.cached_property
+    def motions(self) -> tuple[Array, Array] | None:
+        """`motions_at` the turn of the shape, with their weights (n, n); None: none."""
+        if self.shape is None or self.shape.loaded is None:
+            return None
+        return self.motions_at(0.0), self.shape.loaded.weights
 
     @functools.cached_property
     def shape_forces(self) -> Array | None:
@@ -136,10 +169,15 @@ class RollingGrid(Brief):
         """(k, 3) what the pressed shape adds to the inflated one, (x, y, z), m."""
         return 0.0 if self.shape is None else self.from_wheel(self.shape_at(0.0))
 
-    @functools.cached_property
-    def shape_rate(self) -> Array:
-        """(k, 3) change of `offsets` in the wheel's axes per radian of ``turn``, m: over a step on both sides."""
-        return self.from_wheel((self.shape_at(self.step) - self.shape_at(-self.step)) / (2 * self.step))
+    def shape_rate(self, vectors: Array) -> Array:
+        """(k, 3) change in the wheel's axes per radian of ``turn``, m, of what the shape adds to the motion C f under
+        forces f (k, 3), (x, y, z): over a step on both sides."""
+        rate = self.from_wheel((self.shape_at(self.step) - self.shape_at(-self.step)) / (2 * self.step))
+        if self.motions is None:
+            return rate
+        motions, weights = self.motions
+        change = (self.motions_at(self.step) - self.motions_at(-self.step)) / (2 * self.step)
+        return np.asarray(rate + change @ (weights @ np.tensordot(vectors, motions, axes=2)))
 
     def from_wheel(self, components: Array) -> Array:
         """(k, 3) vectors (x, y, z) of components (n_angles, 3, m) along (r, z, t)."""
@@ -206,7 +244,11 @@ class RollingGrid(Brief):
             blocks = self.kernel[count - 1 - of : 2 * count - 1 - of]
             for a, b in np.ndindex(COMPONENTS, COMPONENTS):
                 compliance[:, :, of] += parts[:, a, :, None] * blocks[:, a, :, b] * parts[of, b]
-        return compliance.reshape(self.n_points, self.n_points)
+        normal = compliance.reshape(self.n_points, self.n_points)
+        if self.motions is not None:
+            into = np.einsum("kx,kxn->kn", normals, self.motions[0])
+            normal += into @ self.motions[1] @ into.T
+        return normal
 
     @functools.cached_property
     def level_axes(self) -> Array:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import functools
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,6 +40,13 @@ def section_motion(tread: TreadCompliance, waves: Complex) -> Complex:
     return moved
 
 
+def _without(loads: Complex, others: Complex) -> Complex:
+    """Loads less others of fewer harmonics."""
+    left = loads.copy()
+    left[: len(others)] -= others
+    return left
+
+
 def force_waves(grid: RollingGrid, components: Array) -> Complex:
     """(harmonics + 1, 3, m) amplitudes of forces (n_angles, m, 3) along (r, z, t), N per radian:
     F = Re(phase F_n e^(i n t))."""
@@ -61,6 +69,7 @@ class SectionFields(Brief):
     deflection : m, of the tyre that bears them.
     antisymmetric : of a half section, compliance and loads of the antisymmetric part.
     less : motion that is taken off; None: none.
+    more : (harmonics + 1, n_dofs) motion that is added, m; of a half section, its symmetric and its antisymmetric part.
     """
 
     tread: TreadCompliance
@@ -68,6 +77,7 @@ class SectionFields(Brief):
     deflection: float = 0.0
     antisymmetric: tuple[TreadCompliance, Complex] | None = None
     less: SectionFields | None = None
+    more: tuple[Complex, ...] = ()
 
     @classmethod
     def of(cls, grid: RollingGrid, components: Array, deflection: float = 0.0) -> SectionFields:
@@ -87,6 +97,15 @@ class SectionFields(Brief):
         odd = (TreadCompliance(influence.antisymmetric), (here - there) / 2)
         return cls(influence.tread, (here + there) / 2, deflection, odd)
 
+    def beside(self, loads: Sequence[Complex], motions: Sequence[Complex]) -> SectionFields:
+        """With loads taken off and motions added, both of harmonics up to some: of a half section, symmetric and
+        antisymmetric ones."""
+        left = _without(self.loads, loads[0])
+        if self.antisymmetric is None:
+            return replace(self, loads=left, more=tuple(motions))
+        tread, odd = self.antisymmetric
+        return replace(self, loads=left, antisymmetric=(tread, _without(odd, loads[1])), more=tuple(motions))
+
     @property
     def harmonics(self) -> int:
         """Highest harmonic."""
@@ -96,6 +115,8 @@ class SectionFields(Brief):
     def amplitudes(self) -> Complex:
         """(harmonics + 1, n_dofs) amplitudes U, m; of a half section, of its symmetric motion."""
         motion = section_motion(self.tread, self.loads)
+        if self.more:
+            motion[: len(self.more[0])] += self.more[0]
         return motion if self.less is None else motion - self.less.amplitudes
 
     @functools.cached_property
@@ -105,6 +126,8 @@ class SectionFields(Brief):
         if self.antisymmetric is None:
             return (self.amplitudes,)
         odd = section_motion(*self.antisymmetric)
+        if len(self.more) == 2:
+            odd[: len(self.more[1])] += self.more[1]
         if self.less is not None and len(self.less.sides) == 2:
             odd = odd - (self.less.sides[0] - self.less.sides[1]) / 2
         return self.amplitudes + odd, self.amplitudes - odd

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import functools
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import block_diag
 
 from tyrefem.brief import Brief
 from tyrefem.errors import InputError
@@ -17,6 +18,7 @@ from tyrefem.mechanics.footprint.road import Road
 from tyrefem.mechanics.rolling.coefficient_search import CoefficientSearch, FrictionLaw
 from tyrefem.mechanics.rolling.contact_body import ContactBody
 from tyrefem.mechanics.rolling.friction import Control, RollingContact
+from tyrefem.mechanics.rolling.loaded_compliance import LoadedCompliance
 from tyrefem.mechanics.rolling.pressed_shape import PressedShape
 from tyrefem.mechanics.rolling.rolled import TORQUE, RolledTyre
 from tyrefem.mechanics.rolling.rolling_grid import ANGLES_BEYOND, RollingGrid
@@ -28,6 +30,8 @@ Array = NDArray[np.float64]
 SETTLED, ROUNDS = 1e-7, 60
 #: Change of the share of the first step in contact at which it has settled; rounds before it is left as it is.
 FRONT_SETTLED, FRONT_ROUNDS = 0.05, 3
+#: Rounds in which forces on the loaded tyre are made known.
+LOADED_ROUNDS = 12
 #: With a law of friction a few points may stick and slip in turn: after so many rounds the change of all forces
 #: together may be this.
 PATIENCE, SETTLED_LAW = 16, 5e-4
@@ -75,6 +79,8 @@ class SteadyRolling(Brief):
     friction: float | FrictionLaw = 1.0
     influence: TreadInfluence | None = None
     shape: PressedShape | None = None
+    #: The loaded tyre's motions that solutions made known: the next begins with them.
+    _loaded: list[LoadedCompliance] = field(default_factory=list, init=False, repr=False)
 
     def __post_init__(self) -> None:
         if isinstance(self.friction, int | float) and not 0 <= self.friction < math.inf:
@@ -117,6 +123,31 @@ class SteadyRolling(Brief):
         ------
         InputError : a deflection beyond the rim, or a load, torque or force that the contact cannot carry.
         """  # fmt: skip
+        if start is not None and self._loaded:
+            start = replace(start, grid=start.grid.loaded(self._loaded[0]))
+        rolled = self._settled(motion, given, harmonics, start, guess)
+        for _ in range(LOADED_ROUNDS):
+            grid, forces = rolled.grid, rolled.grid.shape_forces
+            if grid.shape is None or grid.shape.loaded is None or forces is None:
+                break
+            added = np.moveaxis(rolled.components, 2, 1) - forces
+            loaded = grid.shape.loaded.knowing(grid.points_on_wheel(), added)
+            if loaded is grid.shape.loaded:
+                break
+            self._loaded[:] = [loaded]
+            again = replace(rolled, grid=grid.loaded(loaded))
+            rolled = self._settled(motion, given, harmonics, again, guess)
+        return rolled
+
+    def _settled(
+        self,
+        motion: RollingMotion,
+        given: RollingLoads,
+        harmonics: int,
+        start: RolledTyre | None,
+        guess: tuple[float, float] | None,
+    ) -> RolledTyre:
+        """`roll` with the motions of the loaded tyre that are known."""
         if guess is None:
             guess = (0.1 * self.pressing.bottoming, self.reach) if start is None else (start.deflection, start.travel)
         guess = (
@@ -150,12 +181,20 @@ class SteadyRolling(Brief):
             before = forces
         raise InputError(f"forces, geometry and friction of the rolling contact do not settle in {ROUNDS} rounds")
 
-    def _common(self, grid: RollingGrid, axes: Array, last: RolledTyre | None) -> Array | None:
-        """(k, 3) motion of the tread where the pressed shape turns, as `ContactBody.common`; near a ``last`` round."""
-        if self.shape is None or last is None:
-            return None
-        stiffness = float((grid.shape_rate * grid.rate(last.vectors)).sum())
-        return grid.along(axes, grid.shape_rate) / math.sqrt(stiffness) if stiffness > 0 else None
+    def _common(self, grid: RollingGrid, axes: Array, last: RolledTyre | None) -> tuple[Array, Array] | None:
+        """`ContactBody.common`: motions of the loaded tyre, and, near a ``last`` round, that of the pressed shape where
+        it turns."""
+        motions, weights = [], []
+        if grid.motions is not None:
+            motions.append(np.einsum("kax,kxn->kan", axes, grid.motions[0]))
+            weights.append(grid.motions[1])
+        if self.shape is not None and last is not None:
+            rate = grid.shape_rate(last.vectors)
+            stiffness = float((rate * grid.rate(last.vectors)).sum())
+            if stiffness > 0:
+                motions.append(grid.along(axes, rate)[..., None])
+                weights.append(np.array([[1 / stiffness]]))
+        return (np.concatenate(motions, axis=-1), block_diag(*weights)) if motions else None
 
     def _fronted(self, rolled: RolledTyre, used: Array | None) -> bool:
         """True if the front of the contact is where a solution took it to be."""
@@ -172,8 +211,9 @@ class SteadyRolling(Brief):
     def _turn(rolled: RolledTyre) -> float:
         """Angle, rad, by which the pressed shape turns until the forces do no work in turning it further."""
         forces = rolled.vectors
-        stiffness = float((rolled.grid.shape_rate * rolled.grid.rate(forces)).sum())
-        return float((rolled.grid.shape_rate * forces).sum()) / stiffness if stiffness > 0 else 0.0
+        rate = rolled.grid.shape_rate(forces)
+        stiffness = float((rate * rolled.grid.rate(forces)).sum())
+        return float((rate * forces).sum()) / stiffness if stiffness > 0 else 0.0
 
     def _near(self, harmonics: int, deflection: float) -> RollingGrid:
         """The angles of the frictionless footprint, and `ANGLES_BEYOND` on both sides."""
@@ -181,6 +221,8 @@ class SteadyRolling(Brief):
         half_angle = math.acos(max(1 - deflection * around / self.reach, -0.5))
         side = min(math.ceil(1.1 * half_angle / math.pi * harmonics) + 1, harmonics - 1)
         grid = RollingGrid(self.points, self.road, harmonics, -side, side, self.shape)
+        if self._loaded:
+            grid = grid.loaded(self._loaded[0])
         gaps, normals = grid.gaps(np.zeros((grid.n_points, 3)), self.reach - deflection)
         _, closed = contact_forces(grid.normal_compliance(normals), gaps, symmetric=not self.points.lossy)
         if not closed.any():
