@@ -8,7 +8,7 @@ from typing import Any, cast
 
 import numpy as np
 import pytest
-from formula import Case, case, effect
+from formula import STATED, Case, case, effect
 
 import tyrefem as tf
 from tyrefem.diagnose.candidates import SetPrior
@@ -123,6 +123,30 @@ def test_a_set_is_fitted_from_a_larger_one_whose_further_effect_is_zero() -> Non
     fit = beside.fits[(HOT,)]
     assert fit.members == (HOT,)
     assert fit.log_evidence == pytest.approx(alone.log_evidence, abs=0.5)
+
+
+def test_a_set_that_ended_on_its_way_names_no_effect() -> None:
+    """A base number far off, in a law that bends: after the first steps the effect leads, at their ends it does not."""
+
+    def bent(values: Mapping[str, float]) -> np.ndarray:
+        bump = np.exp(-(((S - 0.2) / 0.2) ** 2) / 2)
+        return np.asarray(
+            40.0 * np.exp(2.5 * np.sin(3 * S) * values.get(STATED.key, 0.0)) + values.get("hot", 0) * bump
+        )
+
+    noise = np.random.default_rng(1).normal(size=len(S))
+    data = case(bent, bent({STATED.key: 0.6}) + noise, (HOT,), SETTINGS)
+    prior = SetPrior((HOT,), 0.5, SETTINGS.size_shares)
+    problem = SelectionProblem(data.residuals, data.predictions, (HOT,), prior, LogEvidence())
+    beside = RankedBeside(problem, Discrepancy(NONE, 0.0))
+    beside._take(first_fits(data.residuals, data.predictions, [(), (HOT,)]))
+    assert beside.best.members == (HOT,)
+    assert not any(fit.converged for fit in beside.fits.values())
+    beside.further()
+    assert beside.best.members == ()
+    assert beside.best.converged
+    assert beside.best.p_value > 0.1
+    assert beside.best.values[STATED] == pytest.approx(0.6, abs=0.01)
 
 
 def under(name: str, probability: float, hot: float, size: float = 0.0, p_value: float = 0.5) -> UnderDiscrepancy:

@@ -154,7 +154,31 @@ class RankedBeside(Brief):
         self._here = replace(self.residuals, sensitivities=sensitive)
 
     def further(self) -> None:
-        """Fit the best estimated sets and estimate from them: twice, and once more if a better one was found last."""
+        """Fit the best estimated sets and estimate from them: twice, and once more if a better one was found last.
+
+        Rivals of the best set are then continued; if one of them gets ahead, once more.
+        """
+        self._search()
+        leading = self.best.members
+        if self._continue_rivals() and self.best.members != leading:
+            self._search()
+
+    def _continue_rivals(self) -> bool:
+        """Continue fits that ended on their way: no effect, and the best sets without an effect of the best one.
+
+        A set that is far from its own best point does not show that the data ask for another effect. True if there
+        were any.
+        """
+        lacking = ([members for members in self.fits if member not in members] for member in (*self.best.members, None))
+        rivals = {max(sets, key=self.score) for sets in lacking if sets} | {()}
+        ended = [self.fits[rival] for rival in rivals if rival in self.fits and not _good(self.fits[rival])]
+        if not ended:
+            return False
+        self._take(continued(self.residuals, self.problem.predictions, ended, self.problem._count))
+        self._estimate()
+        return True
+
+    def _search(self) -> None:
         settings, top = self.problem.settings, -math.inf
         for again in range(3):
             before, top = top, max(map(self.score, self.fits))
