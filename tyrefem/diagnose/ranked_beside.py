@@ -138,6 +138,8 @@ class RankedBeside(Brief):
         if self.far and self._here is None:
             self._renew()
         self._estimate()
+        if self.p_value <= USUAL_P:
+            self._continue_rivals()
 
     def _renew(self) -> None:
         """Continue the best fits with sensitivities at their points; take those of all effects at the best one."""
@@ -164,14 +166,20 @@ class RankedBeside(Brief):
             self._search()
 
     def _continue_rivals(self) -> bool:
-        """Continue fits that ended on their way: no effect, and the best sets without an effect of the best one.
+        """Continue fits that ended on their way: the best one, its parts, no effect, and the best without a member.
 
-        A set that is far from its own best point does not show that the data ask for another effect. True if there
-        were any.
+        A set that is far from its own best point does not show that the data ask for another effect. The parts begin
+        where the best fit ends. True if there were any.
         """
-        lacking = ([members for members in self.fits if member not in members] for member in (*self.best.members, None))
-        rivals = {max(sets, key=self.score) for sets in lacking if sets} | {()}
-        ended = [self.fits[rival] for rival in rivals if rival in self.fits and not _good(self.fits[rival])]
+        best = self.best
+        rivals = {self.problem.ordered(best.members), ()}
+        ended = []
+        for member in best.members:
+            rivals.add(max((members for members in self.fits if member not in members), key=self.score, default=()))
+            part = self.fits.get(tuple(each for each in self.problem.ordered(best.members) if each != member))
+            if not member.presence and (part is None or not _good(part)):
+                ended.append(best.without([member]))
+        ended += [self.fits[rival] for rival in rivals if rival in self.fits and not _good(self.fits[rival])]
         if not ended:
             return False
         self._take(continued(self.residuals, self.problem.predictions, ended, self.problem._count))
@@ -326,12 +334,14 @@ def robustness(
     for name, sizes in _by_cost(problem, fits, explained=explained).items():
         in_full = explained or name == ENERGY
         before = () if in_full else _so_far(problem, alone, ranked).open(settings.named_probability)
+        tried = []
         for discrepancy in sizes:
             known = ranked.get(name, [])
             if known and name != HEAT and not _further(known[0], discrepancy):
                 continue
             beside = RankedBeside(problem, discrepancy, before)
             beside.begin(fits, None if in_full else 1)
+            tried.append(beside)
             if not known or name == HEAT:
                 ranked[name] = [*known, beside]
             elif _total(beside.scored()) > _total(known[0].scored()):
@@ -343,6 +353,8 @@ def robustness(
             if not in_full:
                 beside.begin(fits)
             beside.further()
+        if in_full or counts:
+            ranked[name] = _without_errors(ranked[name], tried)
     share = (1 - settings.right_model) / max(len(ranked), 1)
 
     def result() -> Robustness:
@@ -365,6 +377,19 @@ def robustness(
     for beside in unfinished:
         beside.further()
     return _with_held_out(problem, result() if unfinished else first)
+
+
+def _without_errors(chosen: list[RankedBeside], tried: Sequence[RankedBeside]) -> list[RankedBeside]:
+    """A discrepancy with errors of the readings, or the best one without them if its sets explain the data better.
+
+    Before the search the errors stand in for an effect that no set had yet.
+    """
+    alone = [beside for beside in tried if not beside.discrepancy.size]
+    if not alone or not all(beside.discrepancy.size for beside in chosen):
+        return chosen
+    best = max(alone, key=lambda beside: _total(beside.scored()))
+    best.further()
+    return [best] if _total(best.scored()) > _total(chosen[0].scored()) else chosen
 
 
 def _with_held_out(problem: SelectionProblem, robust: Robustness) -> Robustness:
