@@ -139,7 +139,7 @@ class RankedBeside(Brief):
             self._renew()
         self._estimate()
         if self.p_value <= USUAL_P:
-            self._continue_rivals()
+            self._continue_ended()
 
     def _renew(self) -> None:
         """Continue the best fits with sensitivities at their points; take those of all effects at the best one."""
@@ -162,24 +162,24 @@ class RankedBeside(Brief):
         """
         self._search()
         leading = self.best.members
-        if self._continue_rivals() and self.best.members != leading:
+        if self._continue_ended() and self.best.members != leading:
             self._search()
 
-    def _continue_rivals(self) -> bool:
+    def _continue_ended(self) -> bool:
         """Continue fits that ended on their way: the best one, its parts, no effect, and the best without a member.
 
         A set that is far from its own best point does not show that the data ask for another effect. The parts begin
         where the best fit ends. True if there were any.
         """
         best = self.best
-        rivals = {self.problem.ordered(best.members), ()}
+        to_end = {self.problem.ordered(best.members), ()}
         ended = []
         for member in best.members:
-            rivals.add(max((members for members in self.fits if member not in members), key=self.score, default=()))
+            to_end.add(max((members for members in self.fits if member not in members), key=self.score, default=()))
             part = self.fits.get(tuple(each for each in self.problem.ordered(best.members) if each != member))
             if not member.presence and (part is None or not _good(part)):
                 ended.append(best.without([member]))
-        ended += [self.fits[rival] for rival in rivals if rival in self.fits and not _good(self.fits[rival])]
+        ended += [self.fits[members] for members in to_end if members in self.fits and not _good(self.fits[members])]
         if not ended:
             return False
         self._take(continued(self.residuals, self.problem.predictions, ended, self.problem._count))
