@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 from hidden import FINISHED, WARMER, Case, measure, study
 
+from tyrefem.diagnose import evaluations
 from tyrefem.diagnose.evaluations import ProgressStore
 from tyrefem.diagnose.forward_model import ForwardModel
 
@@ -33,9 +34,12 @@ def case(tmp_path_factory: pytest.TempPathFactory) -> Case:
     store = ProgressStore(folder / "progress")
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(ForwardModel, "response", spied)
+        # Both tries begin as a new process does: full runs that another test made are not in memory.
+        evaluations._HISTORIES.clear()
         with pytest.raises(KeyboardInterrupt):
             owner.diagnose(largest=1, looks=2, store=store, progress=interrupted)
         first = len(computed)
+        evaluations._HISTORIES.clear()
         diagnosis = owner.diagnose(largest=1, looks=2, store=store)
     resumed = store.resumed
     kept = Path(shutil.copytree(folder / "progress", folder / "kept"))
