@@ -96,6 +96,36 @@ def test_another_tyre_is_not_near() -> None:
     assert near().schedule_of(other).cases[0][0] == near().schedule.cases[0][0]
 
 
+def worn(law: str, fraction: float, study: tf.Study | None = None) -> tf.Study:
+    return (study or moved(law)).replace({"effects": [{"name": "worn-tread", "fraction": fraction}]})
+
+
+@pytest.mark.parametrize("law", ["fem", "barrel"])
+def test_a_worn_section_is_exact_where_it_is_solved_and_close_between(law: str) -> None:
+    for fraction, off in ((0.2, 1e-9), (0.25, 2e-3)):
+        tyre = worn(law, fraction)
+        nearby, full = near(law).schedule_of(tyre), cycle_schedule(tyre)
+        assert nearby is not None
+        change = {item: math.log(value / parts(near(law).schedule)[item]) for item, value in parts(full).items()}
+        assert max(map(abs, change.values())) > 0.015
+        assert parts(nearby) == pytest.approx(parts(full), rel=off)
+        ((cycle,),), ((exact,),) = nearby.cycles, full.cycles
+        np.testing.assert_allclose(cycle.points.points, exact.energies.points.points, rtol=0, atol=1e-6)
+        assert nearby.cases[0][0].deflection == pytest.approx(full.cases[0][0].deflection, rel=off)
+
+
+def test_numbers_of_a_worn_section_act_in_proportion() -> None:
+    tyre = worn("barrel", 0.2, moved("barrel", load=1.05))
+    nearby, full = near("barrel").schedule_of(tyre), cycle_schedule(tyre)
+    assert parts(nearby) == pytest.approx(parts(full), rel=0.02)
+    assert parts(nearby) != pytest.approx(parts(cycle_schedule(worn("barrel", 0.2))), rel=0.05)
+
+
+def test_a_tread_worn_in_another_way_is_solved_by_itself() -> None:
+    base = worn("barrel", 0.1)
+    assert NearbyCycles(base).schedule_of(worn("barrel", 0.3)) is None
+
+
 def test_tyres_like_a_tyre_take_its_nearby_cycles(monkeypatch: pytest.MonkeyPatch) -> None:
     base = RollingTyre(study(), near=near())
     _ = near().schedule_of(moved(tread=1.1, plies=0.9, load=1.02))
@@ -108,6 +138,17 @@ def test_tyres_like_a_tyre_take_its_nearby_cycles(monkeypatch: pytest.MonkeyPatc
     second = RollingTyre(moved(tread=0.7, load=1.05), first)
     assert parts(first.schedule) != pytest.approx(parts(base.schedule), rel=0.01)
     assert parts(second.schedule) == pytest.approx(parts(near().schedule_of(second.study)))
+
+
+def test_other_processes_read_worn_sections(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    tyre = worn("barrel", 0.1)
+    schedule = NearbyCycles(study("barrel"), SolvedCycles(tmp_path)).schedule_of(tyre)
+    second = NearbyCycles(study("barrel"), SolvedCycles(tmp_path))
+    _ = second.schedule
+    monkeypatch.setattr("tyrefem.mechanics.barrel.provider", lambda _: lambda _: pytest.fail("solved again"))
+    again = second.schedule_of(tyre)
+    assert parts(again) == parts(schedule)
+    np.testing.assert_array_equal(again.cycles[0][0].points.points, schedule.cycles[0][0].points.points)
 
 
 def test_other_processes_read_what_was_solved(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

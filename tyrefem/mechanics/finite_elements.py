@@ -116,9 +116,9 @@ class PointEnergies:
     def interpolated(self, others: Sequence[tuple[PointEnergies, float]]) -> PointEnergies:
         """U + sum_i w_i (U_i - U), never below 0: interpolation to other cycles at the same points with weights w_i."""
         size = max(len(energies.densities) for energies in (self, *(other for other, _ in others)))
-        densities = _padded(self.densities, size)
+        densities = padded(self.densities, size)
         for other, share in others:
-            densities = densities + share * (_padded(other.densities, size) - _padded(self.densities, size))
+            densities = densities + share * (padded(other.densities, size) - padded(self.densities, size))
         friction = self.friction
         if friction is not None:
             rings = [(other.friction, share) for other, share in others if other.friction is not None]
@@ -126,7 +126,8 @@ class PointEnergies:
         return PointEnergies(self.zones, self.points, np.maximum(densities, 0.0), friction)
 
 
-def _padded(densities: Array, size: int) -> Array:
+def padded(densities: Array, size: int) -> Array:
+    """Densities (orders, n_elements, n_points) with zeros up to a number of orders."""
     return np.pad(densities, ((0, size - len(densities)), (0, 0), (0, 0)))
 
 

@@ -6,19 +6,21 @@ import functools
 import hashlib
 import math
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import astuple, dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tyrefem.errors import InputError
 from tyrefem.inputs.loading import LoadCase, PressedContact
 from tyrefem.inputs.uncertain_numbers import UncertainNumber, written_at
 from tyrefem.mechanics.cycle_schedule import CycleSchedule, KnotSolver, cycle_schedule, same_cycles
-from tyrefem.mechanics.finite_elements import PointEnergies
+from tyrefem.mechanics.finite_elements import PointEnergies, padded
 from tyrefem.mechanics.rolling.friction_rings import CHANGING
 from tyrefem.mechanics.strain_cycle import solved_case
+from tyrefem.mechanics.worn_sections import Wear
 from tyrefem.output import atomic_path
 
 if TYPE_CHECKING:
@@ -26,6 +28,8 @@ if TYPE_CHECKING:
 
 _AMOUNT = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*$", re.DOTALL)
 Solved = tuple[LoadCase, PointEnergies]
+#: Share of the largest density below which the ratio of two densities goes to 1.
+LEAST_SHARE = 1e-4
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,9 +40,9 @@ class SolvedCycles:
     known: dict[str, Solved] = field(default_factory=dict)
 
     def get(self, name: str, like: PointEnergies, solve: Callable[[], Solved]) -> Solved:
-        """The stored solution of a name, or else a new one from ``solve``; ``like``: energies at the same points."""
+        """The stored solution of a name, or else a new one from ``solve``; ``like``: energies of the same elements."""
         if name not in self.known:
-            self.known[name] = self._read(name, like) or self._store(name, solve())
+            self.known[name] = self._read(name, like) or self._store(name, solve(), like)
         return self.known[name]
 
     def _file(self, name: str) -> Path | None:
@@ -52,6 +56,8 @@ class SolvedCycles:
             (load, deflection, pressure, radius, drum), contact = kept["case"], kept["contact"]
             case = LoadCase(float(load), float(deflection), float(pressure), float(radius), float(drum))
             contact = PressedContact(*map(float, contact)) if len(contact) else None
+            if "points" in kept:
+                like = replace(like, points=replace(like.points, points=kept["points"]))
             friction = like.friction
             if friction is not None:
                 changed: dict[str, Any] = {
@@ -60,7 +66,7 @@ class SolvedCycles:
                 friction = replace(friction, **changed)
             return replace(case, contact=contact), replace(like, densities=kept["densities"], friction=friction)
 
-    def _store(self, name: str, solved: Solved) -> Solved:
+    def _store(self, name: str, solved: Solved, like: PointEnergies) -> Solved:
         file = self._file(name)
         if file is not None:
             case, energies = solved
@@ -70,6 +76,8 @@ class SolvedCycles:
                 rings: dict[str, Any] = {}
                 if (friction := energies.friction) is not None:
                     rings = {name: getattr(friction, name) for name in CHANGING}
+                if energies.points is not like.points:
+                    rings["points"] = energies.points.points
                 np.savez(stream, case=numbers, contact=contact, densities=energies.densities, **rings)
         return solved
 
@@ -81,6 +89,9 @@ class NearbyCycles:
     U(x) = U_0 + sum_i x_i / s_i (U_i - U_0). x_i is ln of a number's factor, U_i the solution at the factor 1 + sd, s_i
     its ln. Deflection, footprint and rolling radius are interpolated alike. The first change of a number costs one
     solution per load case.
+
+    A section that an effect wears has its own U_0, between amplitudes at which it is solved (`Wear.nodes`): point by
+    point of elements that keep their number. There U(x) is times U_0 worn over U_0.
 
     Parameters
     ----------
@@ -117,29 +128,87 @@ class NearbyCycles:
             if (factor := _factor(study, number)) != 1.0:
                 changes.append((number.key, math.log(factor) / math.log1p(number.sd)))
                 unchanged_numbers |= dict(zip(number.keys, number.written, strict=True))
-        if not same_cycles(study.replace(unchanged_numbers, self.study), self.study):
+        nodes = self._nodes(study.replace(unchanged_numbers, self.study))
+        if nodes is None:
             return None
-        schedule, driven = self.schedule, KnotSolver(study)
         neighbours = [(self._neighbours[key], share) for key, share in changes]
+        schedule, driven = self.schedule, KnotSolver(study)
         cases: list[tuple[LoadCase, ...]] = []
         cycles: list[tuple[PointEnergies, ...]] = []
         for phase, fractions in enumerate(schedule.knots):
-            neighbours_at_knots = [
-                [(neighbour[phase][knot], share) for neighbour, share in neighbours] for knot in range(len(fractions))
-            ]
-            cases.append(
-                tuple(
-                    _between(driven.case(phase, fraction), case, [(neighbour[0], share) for neighbour, share in at])
-                    for fraction, case, at in zip(fractions, schedule.cases[phase], neighbours_at_knots, strict=True)
-                )
-            )
-            cycles.append(
-                tuple(
-                    _energies(cycle).interpolated([(neighbour[1], share) for neighbour, share in at])
-                    for cycle, at in zip(schedule.cycles[phase], neighbours_at_knots, strict=True)
-                )
-            )
+            of_phase = []
+            for knot, fraction in enumerate(fractions):
+                case, energies = schedule.cases[phase][knot], _energies(schedule.cycles[phase][knot])
+                near = [(neighbour[phase][knot], share) for neighbour, share in neighbours]
+                worn = [(node[phase][knot], weight) for node, weight in nodes]
+                moved = energies.interpolated([(solved[1], share) for solved, share in near])
+                if worn:
+                    moved = _worn(moved, energies, [(solved[1], weight) for solved, weight in worn])
+                cases_near = [(solved[0], share) for solved, share in (*near, *worn)]
+                of_phase.append((_between(driven.case(phase, fraction), case, cases_near), moved))
+            cases.append(tuple(case for case, _ in of_phase))
+            cycles.append(tuple(energies for _, energies in of_phase))
         return CycleSchedule(study.card.drive, schedule.knots, tuple(cases), tuple(cycles))
+
+    def _nodes(self, study: StudyData) -> list[tuple[list[list[Solved]], float]] | None:
+        """Solutions of worn sections by (phase, knot), with their weights; none: the section is not worn.
+
+        ``study``: with the numbers of this one. None if it differs in more than the wear of its section, if the tyre
+        cannot be solved there, or if it rolls with friction.
+        """
+        if same_cycles(study, self.study):
+            return []
+        wear = Wear.of(study)
+        frictional = any(_energies(cycle).friction is not None for cycles in self.schedule.cycles for cycle in cycles)
+        if wear is None or frictional or not same_cycles(wear.at(study, 0), self.study):
+            return None
+        nodes = []
+        for node, weight in wear.nodes.items():
+            name = f"{wear.effect} {node}"
+            if name not in self._worn_nodes:
+                self._worn_nodes[name] = self._solved_node(name, self.study if node == 0 else wear.at(study, node))
+            solved = self._worn_nodes[name]
+            if solved is None:
+                return None
+            nodes.append((solved, weight))
+        return nodes
+
+    @functools.cached_property
+    def _worn_nodes(self) -> dict[str, list[list[Solved]] | None]:
+        return {}
+
+    def _solved_node(self, name: str, study: StudyData) -> list[list[Solved]] | None:
+        """A study with a worn section solved at every knot; None: it has other elements, or no equilibrium."""
+        try:
+            solved = self._solutions(name, KnotSolver(study), worn=True)
+        except InputError:
+            return None
+        same = [
+            cycle[1].densities.shape[1:] == _energies(self.schedule.cycles[phase][knot]).densities.shape[1:]
+            for phase, cycles in enumerate(solved)
+            for knot, cycle in enumerate(cycles)
+        ]
+        return solved if all(same) else None
+
+    def _solutions(self, name: str, solver: KnotSolver, *, worn: bool = False) -> list[list[Solved]]:
+        """Solutions by (phase, knot) of another study; ``worn``: its points have other places."""
+        schedule = self.schedule
+
+        def solved(phase: int, knot: int) -> Solved:
+            start = schedule.cycles[phase][knot]
+            case, like = solver.case(phase, schedule.knots[phase][knot]), _energies(start)
+
+            def solve() -> Solved:
+                cycle = solver.cycle(phase, case, None if worn else start)
+                energies = _energies(cycle)
+                # Kept at the points of this study, so that the mesh of the other cycle need not be kept.
+                points = energies.points if worn else like.points
+                kept = replace(like, points=points, densities=energies.densities, friction=energies.friction)
+                return solved_case(cycle, case), kept
+
+            return self.solved.get(f"{name} {case!r}", like, solve)
+
+        return [[solved(phase, knot) for knot in range(len(knots))] for phase, knots in enumerate(schedule.knots)]
 
     def _raised(self, number: UncertainNumber) -> StudyData:
         return self.study.replace(number.changes(1.0 + number.sd))
@@ -157,24 +226,25 @@ class _Neighbours(dict[str, list[list[Solved]]]):
         self.near = near
 
     def __missing__(self, key: str) -> list[list[Solved]]:
-        near = self.near
-        number = next(uncertain for uncertain in near.numbers if uncertain.key == key)
-        solver, schedule = KnotSolver(near._raised(number)), near.schedule
-
-        def solved(phase: int, knot: int) -> Solved:
-            start = schedule.cycles[phase][knot]
-            case, like = solver.case(phase, schedule.knots[phase][knot]), _energies(start)
-
-            def solve() -> Solved:
-                cycle = solver.cycle(phase, case, start)
-                # Interpolated to the same points, so that the mesh of the other cycle need not be kept.
-                energies = _energies(cycle)
-                return solved_case(cycle, case), replace(like, densities=energies.densities, friction=energies.friction)
-
-            return near.solved.get(f"{key} {case!r}", like, solve)
-
-        self[key] = [[solved(phase, knot) for knot in range(len(knots))] for phase, knots in enumerate(schedule.knots)]
+        number = next(uncertain for uncertain in self.near.numbers if uncertain.key == key)
+        self[key] = self.near._solutions(key, KnotSolver(self.near._raised(number)))
         return self[key]
+
+
+def _worn(moved: PointEnergies, energies: PointEnergies, nodes: Sequence[tuple[PointEnergies, float]]) -> PointEnergies:
+    """The energies of a worn section: of its nodes, times what changed numbers make of the unworn one's.
+
+    ``moved``, ``energies``: the unworn section with and without the changed numbers. ``nodes``: with their weights.
+    """
+    size = max(len(each.densities) for each in (moved, energies, *(node for node, _ in nodes)))
+    weights = np.array([weight for _, weight in nodes])
+    points = np.tensordot(weights, np.array([node.points.points for node, _ in nodes]), 1)
+    densities = np.tensordot(weights, np.array([padded(node.densities, size) for node, _ in nodes]), 1)
+    before, after = padded(energies.densities, size), padded(moved.densities, size)
+    floor = LEAST_SHARE * before.max(axis=(1, 2), keepdims=True)
+    factor = (after + floor) / np.where(floor > 0, before + floor, 1.0)
+    worn = np.maximum(densities * np.where(floor > 0, factor, 1.0), 0.0)
+    return replace(moved, points=replace(moved.points, points=points), densities=worn)
 
 
 def _energies(cycle: Any) -> PointEnergies:
