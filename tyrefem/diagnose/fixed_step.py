@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from tyrefem.cache import Cache, Content
-from tyrefem.conduction.fixed_steps import fixed_step_solution
+from tyrefem.conduction.fixed_steps import GAMMA, fixed_step_solution
 from tyrefem.conduction.points import located
 from tyrefem.conduction.sensitivity import Tangents, stage_times
 from tyrefem.diagnose.unknowns import Unknown
@@ -32,6 +32,8 @@ Array = NDArray[np.float64]
 
 #: A jump nearer than this to another is at the same time, s.
 LEAST_STEP = 1.0
+#: Drives of fewer steps take all of them for sensitivities.
+FEW = 16
 #: Places of sensors in a mesh, by section, size of the elements and true places.
 _POINTS: Cache[Array] = Cache(size=256)
 
@@ -53,8 +55,10 @@ class FixedStepRun:
     values: Array
     reservoirs: Array
     every: float
-    #: Temperatures on `grid` by point, shared with the same simulation as measured by other sensors.
+    #: Temperatures on `grid` by point or reservoir, shared with the same simulation as measured by other sensors.
     _histories: Cache[Array] = field(default_factory=lambda: Cache(128), repr=False)
+    #: What double steps leave out of the slopes of the sensors' readings, (n_sensors, n_grid), by sensors and unknown.
+    left_out: Cache[Array] = field(default_factory=lambda: Cache(256), init=False, repr=False)
 
     def as_measured_by(self, study: StudyData) -> FixedStepRun:
         """The same temperatures, measured by the sensors of another study."""
@@ -70,9 +74,18 @@ class FixedStepRun:
         """Times at which data jump, s: between them a history is smooth. See `breaks`."""
         return tuple(start for start in breaks(self.study)[:-1] if np.abs(self.times - start).min() < 1e-9)
 
-    def dense(self, history: Array) -> Array:
-        """A history at ``times`` (n_times, ...) on `grid`: cubic splines between the ends of steps, up to each jump."""
-        return on_grid(self.times, history, self.starts, self.grid)
+    def dense(self, history: Array, times: Array | None = None) -> Array:
+        """A history at ``times`` (n_times, ...) on `grid`: cubic splines between the ends of steps, up to each jump.
+
+        Default: the times of this simulation.
+        """
+        return on_grid(self.times if times is None else times, history, self.starts, self.grid)
+
+    def in_double_steps(self) -> tuple[Array, Array, Array]:
+        """Times, values and reservoirs of steps twice as long, for sensitivities at a fraction of the time."""
+        times = double_steps(self.times, self.starts)
+        values, reservoirs = (on_grid(self.times, each, self.starts, times) for each in (self.values, self.reservoirs))
+        return times, values, reservoirs
 
     def at(self, s: Array, depth: Array) -> Array:
         """(n_grid, n_places) degC at stations and depths (n_places,), m."""
@@ -96,6 +109,9 @@ class FixedStepRun:
         columns = [self._histories.get(key, partial(column, number)) for number, key in enumerate(keys)]
         return np.column_stack(columns)
 
+    def _of_reservoir(self, number: int) -> Array:
+        return self.dense(self.reservoirs[:, number])
+
     def _computed(self, points: Array) -> Array:
         history = (located(self.tyre.problem.operators, points).value() @ self.values[::2].T).T
         return on_grid(self.times[::2], history, self.starts, self.grid, ends_only=True)
@@ -107,7 +123,11 @@ class FixedStepRun:
         if self.study.sensors:
             at_sensors = self._at_points(self.sensor_points)
         names = list(self.tyre.problem.reservoirs)
-        lumped = {name: self.dense(self.reservoirs[:, names.index(name)]) for name in (GAS, RIM) if name in names}
+        lumped = {
+            name: self._histories.get(name, partial(self._of_reservoir, names.index(name)))
+            for name in (GAS, RIM)
+            if name in names
+        }
         return read(self.study, self.grid, at_sensors, lumped)
 
 
@@ -162,6 +182,26 @@ def breaks(study: StudyData) -> list[float]:
 def time_grid(times: Array, every: float) -> Array:
     """Evenly spaced times over the whole drive, s."""
     return np.linspace(times[0], times[-1], max(int(np.ceil((times[-1] - times[0]) / every)), 2) + 1)
+
+
+def double_steps(times: Array, starts: Sequence[float]) -> Array:
+    """Stage times in which two steps are one; after each of ``starts`` an odd first step stays.
+
+    Drives of fewer steps than `FEW` keep them.
+
+    >>> times = stage_times([0.0, 1200.0])
+    >>> len(times), len(double_steps(times, [0.0]))
+    (41, 21)
+    """
+    ends, edges = times[::2], [*starts, times[-1]]
+    if len(ends) <= FEW:
+        return times
+    merged = [float(ends[0])]
+    for start, end in pairwise(edges):
+        inside = ends[(ends > start + 1e-9) & (ends < end + 1e-9)]
+        for last in inside[1 - len(inside) % 2 :: 2]:
+            merged += [merged[-1] + GAMMA * (last - merged[-1]), float(last)]
+    return np.array(merged)
 
 
 def on_grid(times: Array, history: Array, starts: tuple[float, ...], grid: Array, *, ends_only: bool = False) -> Array:
@@ -226,9 +266,9 @@ class ReadingSensitivities:
             if sensor in (GAS, RIM):
                 known = sensor in gas
                 column = tangents.reservoirs[:, :, gas.index(sensor)] if known else np.zeros(tangents.values.shape[:2])
-                slopes[sensor] = base.dense(column.T)
+                slopes[sensor] = base.dense(column.T, tangents.times)
         if len(slopes) < len(sensors):
-            at_sensors = base.dense(np.moveaxis(tangents.at(base.sensor_points), 0, -1))
+            at_sensors = base.dense(np.moveaxis(tangents.at(base.sensor_points), 0, -1), tangents.times)
             changes = recorded_change(base.study, base.grid, at_sensors)
             slopes |= {name: changes[name] for name in sensors if name not in slopes}
         return slopes

@@ -40,6 +40,8 @@ Places = tuple[tuple[tuple[float, float], ...], ...]
 #: Status of a reduced model at a point: its readings hold; it cannot represent these effects; it has no answer at this
 #: point (an impossible tyre, for example).
 FOLLOWED, NOT_FOLLOWED, NO_ANSWER = 0, 1, 2
+#: Number of simulations of each drive that are kept.
+LATEST = 8
 #: Simulations at x = 0, by study, drive and readings: all diagnoses of one layout share them.
 _BASES: Cache[FixedStepRun] = Cache(size=12)
 
@@ -213,12 +215,32 @@ class ForwardModel(Brief):
         return (*self.base_readings(number), stacked, modes)
 
     def jacobian(self, number: int, unknowns: Sequence[Unknown], at: Values) -> Array:
-        """(n_blocks, n_unknowns): d(block mean)/dx with unknowns at ``at``."""
-        base = self.base(number)
-        here = fixed_step_run(self.with_values(base.study, at), base.tyre, every=base.every)
-        samplings = self.drives[number].sensors
-        slopes = self._varied(here, base.study, unknowns, at).slopes([each.sensor for each in samplings])
-        return np.concatenate([each.sampled(here.grid, slopes[each.sensor]) for each in samplings])
+        """(n_blocks, n_unknowns): d(block mean)/dx with unknowns at ``at``.
+
+        Tangents take steps twice as long as the simulation, and are corrected by what these leave out at x = 0.
+        """
+        base, here, samplings = self.base(number), self._simulated(number, at), self.drives[number].sensors
+        sensors = tuple(each.sensor for each in samplings)
+        slopes = self._varied(here, base.study, unknowns, at, double=True).slopes(sensors)
+        left_out = self._left_out(base, unknowns, sensors)
+        return np.concatenate(
+            [each.sampled(here.grid, slopes[each.sensor] + left_out[place]) for place, each in enumerate(samplings)]
+        )
+
+    def _left_out(self, base: FixedStepRun, unknowns: Sequence[Unknown], sensors: tuple[str, ...]) -> Array:
+        """(n_sensors, n_grid, n_unknowns): what double steps leave out of the slopes of the readings at x = 0."""
+        new = [unknown for unknown in unknowns if (sensors, unknown) not in base.left_out]
+        columns: dict[Unknown, Array] = {}
+        if new:
+            fine, double = (
+                self._varied(base, base.study, new, {}, double=each).slopes(sensors) for each in (False, True)
+            )
+            off = np.nan_to_num(np.array([fine[sensor] - double[sensor] for sensor in sensors]))
+            columns = {unknown: off[:, :, column] for column, unknown in enumerate(new)}
+        every = [
+            base.left_out.get((sensors, unknown), lambda unknown=unknown: columns[unknown]) for unknown in unknowns
+        ]
+        return np.stack(every, axis=-1) if every else np.zeros((len(sensors), len(base.grid), 0))
 
     def source_responses(self, number: int, sources: tuple[Unknown, ...], knots: tuple[float, ...]) -> Array:
         """Block means at a drive by source and knot; see `tyrefem.diagnose.source_responses`."""
@@ -249,15 +271,28 @@ class ForwardModel(Brief):
 
     def predict(self, number: int, values: Values) -> Array:
         """Block means at a drive with unknowns at ``values``, by fixed-step simulation; NaN for an impossible tyre."""
-        base = self.base(number)
         try:
-            study = self.with_values(base.study, values)
-            same = all(x == 0.0 or unknown.measures for unknown, x in _acting(base.study, values).items())
-            simulated = base.as_measured_by(study) if same else fixed_step_run(study, base.tyre, every=base.every)
+            simulated = self._simulated(number, values)
         except InputError:
             # For example a load that the tyre cannot carry: the fit will try a shorter step.
             return np.full(self.drives[number].size, np.nan)
         return self.blocks(number, simulated.grid, simulated.readings)
+
+    def _simulated(self, number: int, values: Values) -> FixedStepRun:
+        """Fixed-step simulation on the mesh and with the operators of `base`; the latest ones are kept."""
+        base = self.base(number)
+
+        def compute() -> FixedStepRun:
+            study = self.with_values(base.study, values)
+            same = all(x == 0.0 or unknown.measures for unknown, x in _acting(base.study, values).items())
+            return base.as_measured_by(study) if same else fixed_step_run(study, base.tyre, every=base.every)
+
+        return self._latest.get((number, frozenset(values.items())), compute)
+
+    @functools.cached_property
+    def _latest(self) -> Cache[FixedStepRun]:
+        """The latest simulations of fits: sensitivities are taken where a fit was simulated."""
+        return Cache(LATEST * max(len(self.drives), 1))
 
     def change_by_law(self, number: int, law: str, level: float = 0.0, mesh: str = "") -> Array:
         """Block means at a drive with another strain law, minus those of the study, at x = 0; NaN if it cannot run.
@@ -352,11 +387,12 @@ class ForwardModel(Brief):
         return self._reduced.get((number, modes.digest), lambda: ReducedDrive(self.base(number), modes, self.settings))
 
     def _varied(
-        self, base: FixedStepRun, origin: StudyData, unknowns: Sequence[Unknown], at: Values
+        self, base: FixedStepRun, origin: StudyData, unknowns: Sequence[Unknown], at: Values, *, double: bool = False
     ) -> ReadingSensitivities:
         """Sensitivities about a solution: tangents if the unknown keeps the mesh, else a second simulation.
 
-        Those of a further effect with which no tyre can be built are NaN, those of an effect in other runs 0.
+        ``double``: tangents in steps twice as long, which takes half the time. Sensitivities of a further effect with
+        which no tyre can be built are NaN, those of an effect in other runs 0.
         """
         again: dict[int, FixedStepRun] = {}
         failed: list[int] = []
@@ -384,7 +420,7 @@ class ForwardModel(Brief):
                 failed.append(column)
         derivatives: Tangents | None = None
         try:
-            derivatives = _tangents(base, perturbed)
+            derivatives = _tangents(base, perturbed, double=double)
         except InputError:
             alone = {column: each for column, each in zip(columns, perturbed, strict=True) if _possible(base, each)}
             impossible = [column for column in columns if column not in alone]
@@ -392,7 +428,7 @@ class ForwardModel(Brief):
                 raise
             failed += impossible
             columns = list(alone)
-            derivatives = _tangents(base, list(alone.values()))
+            derivatives = _tangents(base, list(alone.values()), double=double)
         return ReadingSensitivities(base, tuple(unknowns), again, columns, derivatives, failed)
 
 
@@ -401,8 +437,11 @@ def _acting(study: StudyData, values: Values) -> Values:
     return {unknown: x for unknown, x in values.items() if unknown.acts_in(study.card.run)}
 
 
-def _tangents(base: FixedStepRun, perturbed: Sequence[Perturbed]) -> Tangents | None:
-    return tangents(base.tyre.problem, base.times, base.values, base.reservoirs, perturbed) if perturbed else None
+def _tangents(base: FixedStepRun, perturbed: Sequence[Perturbed], *, double: bool = False) -> Tangents | None:
+    if not perturbed:
+        return None
+    solution = base.in_double_steps() if double else (base.times, base.values, base.reservoirs)
+    return tangents(base.tyre.problem, *solution, perturbed)
 
 
 def _possible(base: FixedStepRun, perturbed: Perturbed) -> bool:

@@ -139,7 +139,7 @@ class RankedBeside(Brief):
             self._renew()
         self._estimate()
         if self.p_value <= USUAL_P:
-            self._continue_ended()
+            self._continue_ended(parts=False)
 
     def _renew(self) -> None:
         """Continue the best fits with sensitivities at their points; take those of all effects at the best one."""
@@ -165,16 +165,16 @@ class RankedBeside(Brief):
         if self._continue_ended() and self.best.members != leading:
             self._search()
 
-    def _continue_ended(self) -> bool:
-        """Continue fits that ended on their way: the best one, its parts, no effect, and the best without a member.
+    def _continue_ended(self, *, parts: bool = True) -> bool:
+        """Continue fits that ended on their way: the best one, no effect, and the best one's parts.
 
         A set that is far from its own best point does not show that the data ask for another effect. The parts begin
-        where the best fit ends. True if there were any.
+        where the best fit ends; the best fit without a member counts as one. True if there were any.
         """
         best = self.best
         to_end = {self.problem.ordered(best.members), ()}
         ended = []
-        for member in best.members:
+        for member in best.members if parts else ():
             to_end.add(max((members for members in self.fits if member not in members), key=self.score, default=()))
             part = self.fits.get(tuple(each for each in self.problem.ordered(best.members) if each != member))
             if not member.presence and (part is None or not _good(part)):
