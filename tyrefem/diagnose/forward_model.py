@@ -238,7 +238,8 @@ class ForwardModel(Brief):
             off = np.nan_to_num(np.array([fine[sensor] - double[sensor] for sensor in sensors]))
             columns = {unknown: off[:, :, column] for column, unknown in enumerate(new)}
         every = [
-            base.left_out.get((sensors, unknown), lambda unknown=unknown: columns[unknown]) for unknown in unknowns
+            base.left_out.get((sensors, unknown), functools.partial(columns.__getitem__, unknown))
+            for unknown in unknowns
         ]
         return np.stack(every, axis=-1) if every else np.zeros((len(sensors), len(base.grid), 0))
 
