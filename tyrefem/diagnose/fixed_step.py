@@ -160,7 +160,11 @@ def fixed_step_run(
     study: StudyData, like: RollingTyre | None = None, near: NearbyCycles | None = None, *, every: float = 5.0
 ) -> FixedStepRun:
     """Simulate a study's drive with fixed steps and a reading ``every`` s; ``like``, ``near``: see `RollingTyre`."""
-    tyre = RollingTyre(study, like, near=near)
+    return run_of_tyre(study, RollingTyre(study, like, near=near), every=every)
+
+
+def run_of_tyre(study: StudyData, tyre: RollingTyre, *, every: float) -> FixedStepRun:
+    """`fixed_step_run` of a study's tyre."""
     times = stage_times(breaks(study))
     return FixedStepRun(study, tyre, times, *fixed_step_solution(tyre.problem, times, tyre.drive.initial), every)
 

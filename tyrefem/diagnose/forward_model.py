@@ -16,7 +16,7 @@ from tyrefem.boundaries.rim import LumpedRim
 from tyrefem.brief import Brief
 from tyrefem.cache import Cache
 from tyrefem.conduction.sensitivity import Perturbed, Tangents, tangents
-from tyrefem.diagnose.fixed_step import FixedStepRun, ReadingSensitivities, fixed_step_run
+from tyrefem.diagnose.fixed_step import FixedStepRun, ReadingSensitivities, fixed_step_run, run_of_tyre
 from tyrefem.diagnose.reduced_forward import Modes, ReducedDrive, modes_of
 from tyrefem.diagnose.sampling import DriveSampling
 from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
@@ -217,15 +217,16 @@ class ForwardModel(Brief):
     def jacobian(self, number: int, unknowns: Sequence[Unknown], at: Values) -> Array:
         """(n_blocks, n_unknowns): d(block mean)/dx with unknowns at ``at``.
 
-        Tangents take steps twice as long as the simulation, and are corrected by what these leave out at x = 0.
+        On the mesh of x = 0 tangents take steps twice as long, and are corrected by what these leave out at x = 0.
         """
         base, here, samplings = self.base(number), self._simulated(number, at), self.drives[number].sensors
         sensors = tuple(each.sensor for each in samplings)
-        slopes = self._varied(here, base.study, unknowns, at, double=True).slopes(sensors)
-        left_out = self._left_out(base, unknowns, sensors)
-        return np.concatenate(
-            [each.sampled(here.grid, slopes[each.sensor] + left_out[place]) for place, each in enumerate(samplings)]
-        )
+        double = here.tyre.mesh is base.tyre.mesh
+        slopes = self._varied(here, base.study, unknowns, at, double=double).slopes(sensors)
+        if double:
+            left_out = self._left_out(base, unknowns, sensors)
+            slopes = {sensor: slopes[sensor] + left_out[place] for place, sensor in enumerate(sensors)}
+        return np.concatenate([each.sampled(here.grid, slopes[each.sensor]) for each in samplings])
 
     def _left_out(self, base: FixedStepRun, unknowns: Sequence[Unknown], sensors: tuple[str, ...]) -> Array:
         """(n_sensors, n_grid, n_unknowns): what double steps leave out of the slopes of the readings at x = 0."""
@@ -413,8 +414,7 @@ class ForwardModel(Brief):
                     perturbed.append(Perturbed(tyre.problem, unknown.step, tyre.drive.initial))
                     columns.append(column)
                 else:
-                    like = base.tyre if tyre.mesh is base.tyre.mesh else None
-                    again[column] = fixed_step_run(study, like, every=base.every)
+                    again[column] = run_of_tyre(study, tyre, every=base.every)
             except InputError:
                 if unknown.effect is None or unknown.origin is not None:
                     raise
