@@ -36,7 +36,7 @@ from tyrefem.diagnose.blind_criteria import (
     rate,
     structural_rates,
 )
-from tyrefem.diagnose.effort import CASE, SENSITIVITIES, check_effort
+from tyrefem.diagnose.effort import CASE, SENSITIVITIES, STRUCTURAL_CASE, check_effort
 from tyrefem.diagnose.evaluations import ProgressStore, evaluating
 from tyrefem.diagnose.forward_model import DriveResponse, ForwardModel
 from tyrefem.diagnose.isolability import candidates_of, layout_notes, planned
@@ -244,7 +244,8 @@ def run_blind(
     with keeping(kept):
         if left:
             model = ForwardModel(study, drives)
-            check_effort(model, f"{len(left):,} blind cases", SENSITIVITIES + len(left) * CASE, workers)
+            of_case = STRUCTURAL_CASE if data_model == STRUCTURAL else CASE
+            check_effort(model, f"{len(left):,} blind cases", SENSITIVITIES + len(left) * of_case, workers)
             progress.open(model)
             with evaluating(model, workers, progress) as evaluations:
                 unknowns, _ = unknowns_of(study, [*study.sensors, GAS], candidates)

@@ -9,8 +9,8 @@ from tyrefem.simulation.estimate import RunEstimate
 #: Cost of a diagnosis per measured run: runs on the fit's mesh, runs on the study's mesh, strain cycles by finite
 #: elements (hidden-effect: 55 s of one processor for four runs; passenger-205-55r16 at 6 mm: 120 s for one run).
 FITTED, STUDY_MESH, CYCLES = 40.0, 2.0, 15.0
-#: Cost of the sensitivities, and of a blind case with its data, in diagnoses.
-SENSITIVITIES, CASE = 0.4, 0.6
+#: Cost in diagnoses: the sensitivities; a blind case with its data; one whose data differ from the study in structure.
+SENSITIVITIES, CASE, STRUCTURAL_CASE = 0.4, 0.6, 3.0
 
 
 def check_effort(model: ForwardModel, what: str, share: float, workers: int = 1) -> None:
@@ -18,7 +18,7 @@ def check_effort(model: ForwardModel, what: str, share: float, workers: int = 1)
 
     Parameters
     ----------
-    what : the work that is about to begin. share : its cost in diagnoses: 1, `SENSITIVITIES`, or multiples of `CASE`.
+    what : the work that is about to begin. share : its cost in diagnoses: 1, `SENSITIVITIES`, or multiples of a case's.
 
     Raises
     ------
