@@ -20,7 +20,7 @@ from tyrefem.mechanics.cycle_schedule import CycleSchedule, KnotSolver, cycle_sc
 from tyrefem.mechanics.finite_elements import PointEnergies, padded
 from tyrefem.mechanics.rolling.friction_rings import CHANGING
 from tyrefem.mechanics.strain_cycle import solved_case
-from tyrefem.mechanics.worn_sections import Wear
+from tyrefem.mechanics.worn_sections import SectionWear
 from tyrefem.output import atomic_path
 
 if TYPE_CHECKING:
@@ -90,7 +90,7 @@ class NearbyCycles:
     its ln. Deflection, footprint and rolling radius are interpolated alike. The first change of a number costs one
     solution per load case.
 
-    A section that an effect wears has its own U_0, between amplitudes at which it is solved (`Wear.nodes`): point by
+    A section that an effect wears has its own U_0, between amplitudes at which it is solved (`SectionWear.nodes`): point by
     point of elements that keep their number. There U(x) is times U_0 worn over U_0.
 
     Parameters
@@ -158,7 +158,7 @@ class NearbyCycles:
         """
         if same_cycles(study, self.study):
             return []
-        wear = Wear.of(study)
+        wear = SectionWear.of(study)
         frictional = any(_energies(cycle).friction is not None for cycles in self.schedule.cycles for cycle in cycles)
         if wear is None or frictional or not same_cycles(wear.at(study, 0), self.study):
             return None

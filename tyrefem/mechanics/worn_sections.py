@@ -19,7 +19,7 @@ STEP = 0.4
 
 
 @dataclass(frozen=True)
-class Wear:
+class SectionWear:
     """The one effect that wears a study's section, and its amplitude.
 
     Parameters
@@ -33,7 +33,7 @@ class Wear:
     value: float
 
     @classmethod
-    def of(cls, study: StudyData) -> Wear | None:
+    def of(cls, study: StudyData) -> SectionWear | None:
         """The wear of a study's section; None if no effect, several effects or several amplitudes make it."""
         wearing = [effect for effect in study.card.acting_effects if effect.overrides("worn")]
         if len(wearing) != 1:
@@ -64,11 +64,11 @@ class Wear:
 
         >>> from tyrefem.effects.effect import Prior
         >>> worn = Prior("1", "worn part", 0.25, 0.0, 0.8)
-        >>> Wear("worn-tread", "fraction", worn, 0.2).nodes
+        >>> SectionWear("worn-tread", "fraction", worn, 0.2).nodes
         {2: 1.0}
-        >>> {n: round(w, 3) for n, w in Wear("worn-tread", "fraction", worn, 0.15).nodes.items()}
+        >>> {n: round(w, 3) for n, w in SectionWear("worn-tread", "fraction", worn, 0.15).nodes.items()}
         {0: -0.062, 1: 0.562, 2: 0.562, 3: -0.062}
-        >>> {n: round(w, 3) for n, w in Wear("worn-tread", "fraction", worn, 0.05).nodes.items()}
+        >>> {n: round(w, 3) for n, w in SectionWear("worn-tread", "fraction", worn, 0.05).nodes.items()}
         {0: 0.375, 1: 0.75, 2: -0.125}
         """
         place = (self.value - self.prior.null) / (STEP * self.prior.scale)
