@@ -90,8 +90,8 @@ class NearbyCycles:
     its ln. Deflection, footprint and rolling radius are interpolated alike. The first change of a number costs one
     solution per load case.
 
-    A section that an effect wears has its own U_0, between amplitudes at which it is solved (`SectionWear.nodes`): point by
-    point of elements that keep their number. There U(x) is times U_0 worn over U_0.
+    A section that an effect wears has its own U_0, between amplitudes at which it is solved (`SectionWear.nodes`):
+    point by point of elements that keep their number. There U(x) is times U_0 worn over U_0.
 
     Parameters
     ----------

@@ -66,8 +66,8 @@ class SectionWear:
         >>> worn = Prior("1", "worn part", 0.25, 0.0, 0.8)
         >>> SectionWear("worn-tread", "fraction", worn, 0.2).nodes
         {2: 1.0}
-        >>> {n: round(w, 3) for n, w in SectionWear("worn-tread", "fraction", worn, 0.15).nodes.items()}
-        {0: -0.062, 1: 0.562, 2: 0.562, 3: -0.062}
+        >>> {n: round(w, 2) for n, w in SectionWear("worn-tread", "fraction", worn, 0.15).nodes.items()}
+        {0: -0.06, 1: 0.56, 2: 0.56, 3: -0.06}
         >>> {n: round(w, 3) for n, w in SectionWear("worn-tread", "fraction", worn, 0.05).nodes.items()}
         {0: 0.375, 1: 0.75, 2: -0.125}
         """
