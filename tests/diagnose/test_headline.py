@@ -18,9 +18,13 @@ from tyrefem.diagnose import DiagnosisData
 from tyrefem.diagnose.amend import Change
 from tyrefem.diagnose.discrepancy import ENERGY, NONE
 from tyrefem.diagnose.headline import QUESTIONS, corrections, headline, label
+from tyrefem.diagnose.numbers import percent
 from tyrefem.diagnose.robustness import Robustness, UnderDiscrepancy
+from tyrefem.diagnose.support import LeftOut, Support
+from tyrefem.diagnose.support_words import alone_words, support_words
 from tyrefem.diagnose.unknowns import Unknown
 from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, PARTLY, UNEXPLAINED
+from tyrefem.diagnose.words import verdict_words
 from tyrefem.reports.diagnosis import page
 from tyrefem.reports.diagnosis_figures import pictures
 from tyrefem.reports.diagnosis_summary import (
@@ -136,8 +140,56 @@ def test_a_part_of_the_cause_has_its_range_and_what_is_beside_it(case: Case) -> 
     assert " to 29" in wrong
     assert "moves crown-outer by up to +" in wrong
     assert "besides it the data speak for another strain energy along the meridian" in wrong
-    assert "at least 97 % probable, whatever else is wrong" in sure
+    assert "with all readings at least 97 %, whatever else is wrong" in sure
     assert "Check that you believe the range" in step
+
+
+def supported(d: DiagnosisData, *left: LeftOut, only_at: str = "") -> DiagnosisData:
+    (member,) = d.best.members
+    return replace(d, supports={member: Support(left, only_at)})
+
+
+def test_a_set_is_stated_at_the_confidence_of_its_weakest_member(case: Case) -> None:
+    d = case.diagnosis
+    chance = percent(d.judgement.probability)
+    weak = supported(d, LeftOut("sensor", "crown-outer", 0.62), LeftOut("run", "slow", 0.97))
+    assert headline(weak)[1].startswith(
+        f"It is at least 62 % probable without any one sensor or run (least without crown-outer); with all readings "
+        f"{chance}, among all that was tried; "
+    )
+    # Without a difference in words, one number.
+    sure = supported(d, LeftOut("run", "slow", d.judgement.probability))
+    assert headline(sure)[1].startswith(
+        f"It is {chance} probable, also without any one sensor or run (least without run slow), among"
+    )
+    assert headline(replace(d, supports={}))[1].startswith(f"It is {chance} probable, among all that was tried")
+    beside = supported(partly(d), LeftOut("sensor", "crown-outer", 0.93))
+    assert headline(beside)[1].startswith(
+        "It is at least 93 % probable without any one sensor or run (least without crown-outer); with all readings at "
+        "least 97 %, whatever else is wrong; "
+    )
+
+
+def test_a_member_that_one_sensor_asks_for_is_said_to_be_that_at_once(case: Case) -> None:
+    d = case.diagnosis
+    (member,) = d.best.members
+    alone = supported(d, LeftOut("sensor", "crown-outer", 0.12), LeftOut("run", "slow", 0.97))
+    sure = headline(alone)[1]
+    assert sure.startswith("It is only 12 % probable without crown-outer, which alone asks for hot-road; with all")
+    assert "Only crown-outer asks" not in sure
+    assert "Only crown-outer asks for hot-road: without it the probability is 12 %." in " ".join(verdict_words(alone))
+    # A second member of the set, at another sensor, and a fault that only its sensor can show.
+    sun = next(each for each in d.candidates if each.key == "sun")
+    offset = next(each for each in d.candidates if each.name == "sensor-offset" and not each.runs)
+    others = {
+        sun: Support((LeftOut("sensor", "sidewall-outer", 0.3),)),
+        offset: Support((LeftOut("run", "slow", 0.99),), dict(offset.choice)["sensor"]),
+    }
+    several = headline(replace(alone, supports={**alone.supports, **others}))[1]
+    assert "Only sidewall-outer asks for sun: without it the probability is 30 %." in several
+    assert f"{offset.key} can show only at {dict(offset.choice)['sensor']}." in several
+    assert support_words(alone) == alone_words(alone)
+    assert member in alone.supports
 
 
 def test_no_gap_at_a_large_rms_names_its_corrections_and_is_not_green(case: Case) -> None:

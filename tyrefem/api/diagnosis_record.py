@@ -51,7 +51,7 @@ class DiagnosisRecord(Record):
 
     @property
     def headline(self) -> tuple[str, ...]:
-        """Verdict, cause and what to do, a sentence each."""
+        """What is wrong, how sure, and what to do next, a sentence each."""
         return tuple(self.summary["headline"])
 
     @property

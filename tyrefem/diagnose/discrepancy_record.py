@@ -20,7 +20,7 @@ POSSIBLE = 0.05
 def effect_probability(d: DiagnosisData, member: Candidate) -> float:
     """Probability that an effect acts; of a partly identified one the smallest over the discrepancy models."""
     if d.verdict == PARTLY and d.robustness is not None:
-        return d.robustness.least(member.key)
+        return min(d.robustness.least(member.key), 1.0)
     return d.judgement.named.get(member.key, 0.0)
 
 
@@ -29,11 +29,16 @@ def confidence(d: DiagnosisData) -> float:
 
     NaN without a named effect. An effect that can show only at one sensor, or in one run, is not left without it.
     """
-    if not d.supports:
+    return min((member_confidence(d, member) for member in d.best.members), default=math.nan) if d.supports else math.nan
+
+
+def member_confidence(d: DiagnosisData, member: Candidate) -> float:
+    """The same of one effect; NaN if it was not judged without each sensor and run."""
+    support = d.supports.get(member)
+    if support is None:
         return math.nan
-    chances = [effect_probability(d, member) for member in d.best.members]
-    weakest = [support.weakest.probability for support in d.supports.values() if support.weakest]
-    return min([*chances, *weakest])
+    chance = effect_probability(d, member)
+    return min(chance, support.weakest.probability) if support.weakest else chance
 
 
 def support_row(d: DiagnosisData, member: Candidate) -> dict[str, Any] | None:
@@ -57,7 +62,7 @@ def possible_effects(d: DiagnosisData) -> dict[str, float]:
     if d.verdict not in (UNEXPLAINED, PARTLY) or leading is None or leading.refuted or not leading.fits:
         return {}
     named = {member.key for member in d.best.members} if d.verdict == PARTLY else set()
-    return {key: share for key, share in leading.named.items() if share >= POSSIBLE and key not in named}
+    return {key: min(share, 1.0) for key, share in leading.named.items() if share >= POSSIBLE and key not in named}
 
 
 def discrepancy_rows(d: DiagnosisData) -> list[dict[str, Any]]:
@@ -73,7 +78,7 @@ def discrepancy_rows(d: DiagnosisData) -> list[dict[str, Any]]:
             "allows_for": model.words,
             "probability": model.probability,
             "p_value": model.p_value,
-            "effects": {key: share for key, share in model.named.items() if share >= LEAST},
+            "effects": {key: min(share, 1.0) for key, share in model.named.items() if share >= LEAST},
             "parameters": {
                 key: {"value": unknowns[key].value(x), "sd": sd, "unit": unknowns[key].unit}
                 for key, (x, sd) in model.values.items()

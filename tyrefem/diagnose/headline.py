@@ -16,11 +16,11 @@ from tyrefem.diagnose.heat_sources import STATED, UnknownSource
 from tyrefem.diagnose.heat_words import course_words, source_place
 from tyrefem.diagnose.materiality import Movement, largest_change
 from tyrefem.diagnose.numbers import amount, correction_subject, correction_words, percent, run_words
-from tyrefem.diagnose.partly_words import besides_words, explaining_words, least_words, or_outside_words, ranges
+from tyrefem.diagnose.partly_words import besides_words, explaining_words, least_probable, least_words, or_outside_words, ranges
 from tyrefem.diagnose.pulls import Pull, pulls
 from tyrefem.diagnose.result_tables import clearest, competing_sets, inclusion_probability
 from tyrefem.diagnose.strain_words import law_in_short, law_sure
-from tyrefem.diagnose.support_words import support_words
+from tyrefem.diagnose.support_words import alone_words, stated_words
 from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, PARTLY, RankedSet
 from tyrefem.diagnose.words import (
     besides,
@@ -114,8 +114,9 @@ def _moved(d: DiagnosisData, pull: Pull) -> Movement:
 
 def _identified(d: DiagnosisData) -> tuple[str, str, str]:
     wrong = _joined([effect_clause(d, member) for member in d.best.members])
-    chance = f"{_it_is(d.best.members)} {percent(d.judgement.probability)} probable"
-    sure = " ".join((f"{chance} among all that was tried; {_closed(d)}.", *support_words(d)[:1]))
+    chance = d.judgement.probability
+    sure = f"{stated_words(d, chance, percent(chance))}, among all that was tried; {_closed(d)}."
+    sure = " ".join((sure, *alone_words(d, further=True)))
     values = "values" if len(d.best.members) > 1 else "value"
     step = f"Check that you believe the {values}, then go on with amended.toml"
     if d.again is not None and d.again.verdict != NO_GAP:
@@ -153,8 +154,8 @@ def _confounded(d: DiagnosisData) -> tuple[str, str, str]:
 def _partly(d: DiagnosisData) -> tuple[str, str, str]:
     clauses = _joined([part_clause(d, member) for member in d.best.members])
     wrong = f"This is a part of it: {clauses.rstrip('.')}; {besides_words(d)}."
-    sure = f"{_it_is(d.best.members)} {least_words(d)} probable, whatever else is wrong; {_closed(d)}."
-    sure = " ".join((sure, *support_words(d)[:1]))
+    sure = f"{stated_words(d, least_probable(d), least_words(d))}, whatever else is wrong; {_closed(d)}."
+    sure = " ".join((sure, *alone_words(d, further=True)))
     rest = _rest(d) or "look for the rest where the page shows what is left: strain energy, tan delta, drive"
     return wrong, sure, f"Check that you believe the range, then {rest}."
 

@@ -50,9 +50,14 @@ def ranges(d: DiagnosisData, member: Candidate) -> list[str]:
 
 def least_words(d: DiagnosisData) -> str:
     """The smallest probability of the effects over the discrepancy models: "at least 97 %"."""
+    return at_least(least_probable(d))
+
+
+def least_probable(d: DiagnosisData) -> float:
+    """The smallest probability of the effects over the discrepancy models."""
     robust = d.robustness
     assert robust is not None
-    return at_least(min(robust.least(member.key) for member in d.best.members))
+    return min(robust.least(member.key) for member in d.best.members)
 
 
 def tried_words(d: DiagnosisData) -> str:

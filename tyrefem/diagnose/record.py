@@ -9,6 +9,7 @@ from tyrefem.diagnose.discrepancy_record import (
     confidence,
     discrepancy_rows,
     effect_probability,
+    member_confidence,
     possible_effects,
     support_row,
 )
@@ -52,6 +53,7 @@ def record(d: DiagnosisData) -> dict[str, Any]:
                 "variant": dict(member.choice),
                 "runs": list(member.runs) or None,
                 "probability": effect_probability(d, member),
+                "confidence": member_confidence(d, member),
                 "parameters": parameters(member.unknowns, d.best),
                 "moves": _moves(d, member),
                 "support": support_row(d, member),

@@ -103,7 +103,7 @@ def supports(
         for member in best.members:
             if places[member] != name:
                 share = math.fsum(math.exp(value - total) for members, value in sets.items() if member in members)
-                chances[member].append(LeftOut(kind, name, share))
+                chances[member].append(LeftOut(kind, name, min(share, 1.0)))
     return {
         member: Support(tuple(sorted(each, key=lambda entry: entry.probability)), places[member])
         for member, each in chances.items()

@@ -95,7 +95,7 @@ ANSWERS: dict[str, Keys] = {
     "diagnose": {
         **_STUDY, **_VERSIONS, **_AGAIN,
         "verdict": "text: identified, partly identified, confounded, unexplained or no gap.",
-        "headline": "list: Verdict, cause and what to do, a sentence each.",
+        "headline": "list: What is wrong, how sure, what to do next, a sentence each.",
         "summary": "list: The report in sentences.",
         "reasons": "list: Why this verdict.", "effects": "list: Effects that are named.",
         "candidates": "list: Effects with probability, evidence and parameters.", "notes": "list: What to know.",
@@ -111,7 +111,6 @@ ANSWERS: dict[str, Keys] = {
         "changes": "list: Numbers of the amended study.", "missing_heat": "table?: Heat of unknown origin.",
         "again": "list: Further rounds.", "runs": "list: The measured runs.",
         "numerics": "table: Mesh and assumptions.", "reduced": "table: Certificates of the reduced models.",
-        "partly*": "table: What is certain in a partly identified verdict.",
     },
     "plan": {
         **_VERSIONS, "study": "text: Name of the study.", "after": "text?: Diagnosis or table that the plan follows.",
@@ -134,7 +133,7 @@ ANSWERS: dict[str, Keys] = {
         "cases": "list: Hidden effect, verdict and probabilities of each case.",
         "rates": "table: How often the diagnosis is right, with intervals.",
         "reliability": "list: Stated probabilities and how often they held.",
-        "by_effect": "list: Cases by effect.", "failures": "list: Cases without a verdict.",
+        "by_effect": "list: Cases by effect.", "failures": "list: Cases that miss a goal, with what was hidden and said.",
         "notes": "list: What to know.", "plugins": "list: Your own effects and laws that took part.",
     },
     "sweep": {

@@ -141,6 +141,7 @@ ROWS: dict[str, Keys] = {
         "runs": "list?: Runs in which it acts; null: in all.", "probability": "number: Posterior probability.",
         "parameters": "table: Parameter -> value, sd, unit.",
         "moves": "table?: largest_K, sensor, run: largest change of a reading.",
+        "confidence": "number?: Least of that and of those without single sensors and runs.",
         "support": "table?: Probability without each sensor and run.", "source": "text: Source of the effect.",
     },
     "diagnose.candidates[]": {
