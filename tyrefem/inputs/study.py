@@ -54,7 +54,8 @@ class StudyData(StudyContents):
         """
         path = library.find("study", str(name))
         folder = path.parent.resolve()
-        stem = folder.name if path.name == "study.toml" else path.stem
+        # The root of a disk has no name.
+        stem = (folder.name or path.stem) if path.name == "study.toml" else path.stem
         changes = dict(changes or {})
         # A changed table of cases is set before its case is selected.
         first = changes if case is None else {key: changes.pop(key) for key in list(changes) if key == "cases"}
