@@ -135,7 +135,8 @@ class DiagnosisData(Brief):
     @functools.cached_property
     def prior_sensitivity(self) -> tuple[PriorChange, ...]:
         """The verdict with priors of the leading effects three times as large, and a third."""
-        return prior_sensitivity(self.judgement, self.gap, self.null, self.best, self.robustness)
+        replaced = self.better_law is not None
+        return prior_sensitivity(self.judgement, self.gap, self.null, self.best, self.robustness, law_replaced=replaced)
 
     def rms(self, *, after: bool, held_out: bool) -> float:
         """Root mean square of measured - computed, K."""

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import functools
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
-from tyrefem.diagnose.candidates import Candidate
+from tyrefem.diagnose.candidates import Members
+from tyrefem.diagnose.discrepancy import NONE
 from tyrefem.diagnose.evidence import posterior
 from tyrefem.diagnose.fits import FittedSet, linear_about
 from tyrefem.diagnose.partly import beside_discrepancies
@@ -41,7 +43,8 @@ class PriorChange(Brief):
     prior : "probability" or "amplitude".
     factor : on the prior probability, or on the standard deviations of the amplitudes.
     verdict, best : the verdict and the named effects, or the most probable set if none is named.
-    share : probability that the members of the most probable set act. decides : the verdict or its names change.
+    share : probability that the members of the most probable set act; of partly identified effects the smallest over
+        the discrepancy models. decides : the verdict or its names change.
     """
 
     effect: str
@@ -62,40 +65,51 @@ def prior_sensitivity(
     null: FittedSet,
     best: FittedSet,
     robustness: Robustness | None = None,
+    *,
+    law_replaced: bool = False,
 ) -> tuple[PriorChange, ...]:
     """The verdicts that the priors of the leading effects decide; cheap, as nothing is simulated.
 
     A factor f on the prior probability of an effect, all its variants together, multiplies the odds of every set that
     contains it by f. Another standard deviation of its amplitudes changes the Gaussian evidence of these sets, see
-    `evidence_change`. The verdict follows from the sets ranked again. Beside a discrepancy model the odds of
-    the effect change in the same way; the
-    model's own probability stays.
+    `evidence_change`. The verdict follows from the sets ranked again. Beside a discrepancy model, or another strain
+    law that was tried, the odds of the effect change in the same way; the model's own probability stays. Laws that were
+    not tried, and heat of unknown origin by itself if it was not fitted, do not count.
 
     Parameters
     ----------
     judgement : the verdict. residuals : measured minus computed. null, best : fits of no effect and of the best set.
-    robustness : effects beside discrepancy models.
+    robustness : effects beside discrepancy models. law_replaced : another strain law stands in place of the study's.
     """
     ranking = judgement.ranking
-    known = {frozenset(fit.members): fit for fit in (null, best)}
+    fits = [null, best]
+    acting: Members = ()
+    if judgement.verdict == PARTLY and robustness is not None:
+        # The best fit is one beside a discrepancy.
+        fits = [null, *(fit for model in robustness.models if model.name == NONE for fit in model.fits.values())]
+        acting = best.members
+    known = {frozenset(fit.members): fit for fit in fits}
 
-    def verdict(entries: Sequence[RankedSet], models: Robustness | None) -> tuple[Judgement, str]:
+    def verdict(entries: Sequence[RankedSet], models: Robustness | None) -> tuple[Judgement, str, float]:
         judged = judge(entries, lambda members: known.get(frozenset(members)), residuals.settings)
-        members: tuple[Candidate, ...] = ()
+        members: Members = ()
         if models is not None:
-            revision = beside_discrepancies(judged, models, residuals.settings)
+            heat = models.heat
+            revision = beside_discrepancies(judged, models, residuals.settings, law_replaced=law_replaced, heat=heat)
             judged = judged.revised(revision.verdict, revision.reasons, revision.doubts)
             members = revision.members
-        named = " + ".join(sorted(member.key for member in members)) if judged.verdict == PARTLY else judged.best.key
-        return judged, named
+        if judged.verdict != PARTLY or models is None:
+            return judged, judged.best.key, probability(judged.ranking)
+        least = min(models.least(member.key) for member in members)
+        return judged, " + ".join(sorted(member.key for member in members)), min(least, 1.0)
 
-    before, name = verdict(ranking, robustness)
+    before, name, _ = verdict(ranking, robustness)
     changes = []
-    for effect, prior, factor, shifts, models in _variants(ranking, residuals, null, robustness):
-        again, named = verdict(_shifted(ranking, shifts), models)
+    for effect, prior, factor, shifts, models in _variants(ranking, residuals, null, robustness, acting):
+        again, named, share = verdict(_shifted(ranking, shifts), models)
         decides = (again.verdict, named) != (before.verdict, name)
         shown = again.verdict if decides else judgement.verdict
-        changes.append(PriorChange(effect, prior, factor, shown, named, probability(again.ranking), decides))
+        changes.append(PriorChange(effect, prior, factor, shown, named, share, decides))
     return tuple(changes)
 
 
@@ -149,12 +163,15 @@ _Variant = tuple[str, str, float, Mapping[int, float], Robustness | None]
 
 
 def _variants(
-    ranking: Sequence[RankedSet], residuals: Residuals, null: FittedSet, robustness: Robustness | None
+    ranking: Sequence[RankedSet],
+    residuals: Residuals,
+    null: FittedSet,
+    robustness: Robustness | None,
+    acting: Members = (),
 ) -> list[_Variant]:
     """(effect, prior, factor, number of the set -> change of its score, effects beside discrepancy models)."""
     variants: list[_Variant] = []
-    models = robustness.models if robustness else ()
-    for name in leading_effects(ranking):
+    for name in leading_effects(ranking, acting):
         members = [[each for each in entry.members if each.name == name] for entry in ranking]
         with_it = [number for number, of_name in enumerate(members) if of_name]
         top = ranking[0].score
@@ -162,14 +179,14 @@ def _variants(
         amplitudes = [unknown for number in near for each in members[number] for unknown in each.amplitudes]
         for factor in FACTORS:
             shift = math.log(factor)
-            beside = _beside(robustness, name, [shift] * len(models))
+            beside = _beside(robustness, name, functools.partial(_alike, shift=shift))
             variants.append((name, PROBABILITY, factor, dict.fromkeys(with_it, shift), beside))
         for factor in FACTORS if amplitudes else ():
             changed = dict.fromkeys(amplitudes, factor)
             shifts = {number: _shift(ranking, number, residuals, null, changed) for number in near}
             # Sets far below the best change as the best set with the effect does.
             shifts = dict.fromkeys(with_it, shifts[near[0]]) | shifts
-            beside = _beside(robustness, name, [_shift_beside(model, name, changed) for model in models])
+            beside = _beside(robustness, name, functools.partial(_shift_beside, name=name, changed=changed))
             variants.append((name, AMPLITUDE, factor, shifts, beside))
     for key in (NO_EFFECT, OUTSIDE):
         places = [number for number, entry in enumerate(ranking) if entry.key == key]
@@ -178,13 +195,16 @@ def _variants(
     return variants
 
 
-def leading_effects(ranking: Sequence[RankedSet]) -> tuple[str, ...]:
+def leading_effects(ranking: Sequence[RankedSet], acting: Members = ()) -> tuple[str, ...]:
     """Names of the effects of the most probable set and of all sets above 1 %, at most eight.
+
+    ``acting``: partly identified effects, which come first; no set needs them where heat of unknown origin leads.
 
     The variants of an effect, and its forms in single runs, share a prior.
     """
     sets = [entry for number, entry in enumerate(ranking) if number == 0 or entry.probability >= LEAST]
-    return tuple(dict.fromkeys(member.name for entry in sets for member in entry.members))[:MOST]
+    members = (*acting, *(member for entry in sets for member in entry.members))
+    return tuple(dict.fromkeys(member.name for member in members))[:MOST]
 
 
 def _shift(
@@ -223,18 +243,27 @@ def _shifted(ranking: Sequence[RankedSet], shifts: Mapping[int, float]) -> tuple
     return tuple(sorted(entries, key=lambda entry: -entry.score))
 
 
-def _beside(robustness: Robustness | None, name: str, shifts: Sequence[float]) -> Robustness | None:
-    """The effects beside discrepancy models; ``shifts``: of ln odds of one effect, by model."""
+def _beside(
+    robustness: Robustness | None, name: str, shift_of: Callable[[UnderDiscrepancy], float]
+) -> Robustness | None:
+    """The effects beside discrepancy models and strain laws; ``shift_of``: model -> change of ln odds of one effect."""
     if robustness is None:
         return None
-    models = []
-    for model, shift in zip(robustness.models, shifts, strict=True):
+
+    def shifted(model: UnderDiscrepancy) -> UnderDiscrepancy:
         of_effect = {key: share for key, share in model.named.items() if key.split(" ")[0] == name}
-        acts, odds = min(sum(of_effect.values()), 1.0), math.exp(min(shift, 700.0))
+        acts, odds = min(sum(of_effect.values()), 1.0), math.exp(min(shift_of(model), 700.0))
         total = 1 - acts + acts * odds
         named = {key: min(share * odds / total, 1.0) for key, share in of_effect.items()}
-        models.append(replace(model, named={**model.named, **named}))
-    return Robustness(tuple(models))
+        return replace(model, named={**model.named, **named})
+
+    models, laws = (tuple(map(shifted, each)) for each in (robustness.models, robustness.laws))
+    return replace(robustness, models=models, laws=laws)
+
+
+def _alike(_: UnderDiscrepancy, shift: float) -> float:
+    """The same change of ln odds beside every model."""
+    return shift
 
 
 def _shift_beside(model: UnderDiscrepancy, name: str, changed: Mapping[Unknown, float]) -> float:

@@ -10,6 +10,7 @@ from tyrefem.brief import Brief
 from tyrefem.diagnose.candidates import Candidate, Members
 from tyrefem.diagnose.discrepancy import NONE, Discrepancy
 from tyrefem.diagnose.fits import FittedSet
+from tyrefem.diagnose.free_heat import FreeHeat
 from tyrefem.diagnose.residuals import Residuals
 from tyrefem.diagnose.unknowns import Unknown
 
@@ -92,13 +93,14 @@ class Robustness(Brief):
 
     ``models``: the models, the most probable first. ``laws``: other strain laws that were tried, without a probability.
     ``untried``: other strain laws that were not tried. ``log_evidence``: ln evidence of the data, over all models and
-    sets of effects with their priors.
+    sets of effects with their priors. ``heat``: heat of unknown origin by itself; None if it was not fitted.
     """
 
     models: tuple[UnderDiscrepancy, ...]
     laws: tuple[UnderDiscrepancy, ...] = ()
     untried: tuple[str, ...] = ()
     log_evidence: float = math.nan
+    heat: FreeHeat | None = None
 
     def _title(self) -> str:
         return f"{len(self.models)} models, {self.models[0].name} first"
