@@ -31,7 +31,7 @@ from tyrefem.diagnose.settings import DiagnosisSettings
 from tyrefem.diagnose.strain_law_study import COARSE_MESH, LEVEL_SD, STRETCHES, by_law
 from tyrefem.diagnose.unknowns import base_unknowns, with_values
 from tyrefem.diagnose.verdict import NO_GAP, PARTLY, UNEXPLAINED
-from tyrefem.diagnose.words import verdict_words
+from tyrefem.diagnose.words import missing_heat_words, verdict_words
 from tyrefem.plan.beliefs import diagnosed_beliefs, stored_beliefs
 from tyrefem.reports.diagnosis import page
 
@@ -161,6 +161,7 @@ def test_a_law_that_leaves_no_gap_is_told_and_names_no_effect(case: Case) -> Non
     assert "strain law barrel" in step
     assert "With this strain law no effect is missing." in verdict_words(result)
     assert record(result)["effects"] == []
+    assert missing_heat_words(result) == ()
     assert "Heat of unknown origin" not in page(result, {}, version="test")
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import re
 import subprocess
 from collections.abc import Callable
@@ -14,6 +15,8 @@ import pytest
 from hidden import RUNS, Case
 from made_up import confounded, judged, unexplained
 
+from tyrefem.api.diagnosis import Diagnosis
+from tyrefem.api.diagnosis_record import DiagnosisRecord
 from tyrefem.diagnose import DiagnosisData
 from tyrefem.diagnose.amend import Change
 from tyrefem.diagnose.discrepancy import ENERGY, NONE
@@ -24,7 +27,7 @@ from tyrefem.diagnose.support import LeftOut, Support
 from tyrefem.diagnose.support_words import alone_words, support_words
 from tyrefem.diagnose.unknowns import Unknown
 from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, PARTLY, UNEXPLAINED
-from tyrefem.diagnose.words import verdict_words
+from tyrefem.diagnose.words import noise_words, verdict_words
 from tyrefem.reports.diagnosis import page
 from tyrefem.reports.diagnosis_figures import pictures
 from tyrefem.reports.diagnosis_summary import (
@@ -38,6 +41,7 @@ from tyrefem.reports.diagnosis_summary import (
     summary,
     summary_tables,
 )
+from tyrefem.reports.notebook import GOOD, diagnosis_page, diagnosis_record_page
 
 
 def no_gap(d: DiagnosisData, gap: bool) -> DiagnosisData:
@@ -205,6 +209,64 @@ def test_no_gap_at_a_large_rms_names_its_corrections_and_is_not_green(case: Case
     text = page(loud, {}, version="1")
     assert 'class="verdict no-gap-after-corrections"' in text
     assert 'class="verdict no-gap"' not in text
+
+
+def test_a_notebook_is_not_green_either_where_corrections_close_the_gap(case: Case, tmp_path: Path) -> None:
+    quiet, loud = (no_gap(case.diagnosis, gap=gap) for gap in (False, True))
+    assert GOOD in diagnosis_page(quiet)
+    assert GOOD not in diagnosis_page(loud)
+    assert "no gap after corrections" in diagnosis_page(loud)
+    Diagnosis.of(loud).save(tmp_path)
+    record = json.loads((tmp_path / "verdict.json").read_text(encoding="utf-8"))
+    assert (record["verdict"], record["label"]) == (NO_GAP, label(loud))
+    back = DiagnosisRecord(tmp_path, "diagnose", True)
+    assert back.label == label(loud)
+    assert GOOD not in diagnosis_record_page(back)
+
+
+def test_the_page_gives_corrections_in_standard_deviations_and_kelvins(case: Case) -> None:
+    d = no_gap(case.diagnosis, gap=True)
+    (correction,) = corrections(d)
+    text = page(d, {}, version="1")
+    move = correction.move
+    assert f"<td>{correction.pull.pull:+.1f}</td>" in text
+    assert f"{move.kelvin:+.1f} K ({move.sensor}, {move.run})" in text
+    assert f"change no reading by {d.gap.settings.negligible:g} K are left out" in text
+
+
+def test_the_summary_says_that_the_stated_noise_is_another(case: Case) -> None:
+    d = case.diagnosis
+    assert noise_words(d) == ()
+    runs = tuple(
+        replace(run, sensors=tuple(replace(each, origin=replace(each.origin, stated=1.4)) for each in run.sensors))
+        for run in d.gap.runs
+    )
+    other = replace(d, gap=replace(d.gap, runs=runs))
+    (sentence,) = noise_words(other)
+    assert "the stated noise is 1.4 K" in sentence
+    assert sentence in summary(other, version="1")
+
+
+def test_the_summary_of_a_part_of_the_cause_shows_it_beside_every_discrepancy(case: Case) -> None:
+    table = summary_tables(partly(case.diagnosis))[-1]
+    assert table.title == "If more is wrong than effects"
+    assert table.rows == (
+        ("another strain energy along the meridian", "90 %", "hot-road 99.0 %"),
+        ("the model as it is", "10 %", "hot-road 97 %"),
+    )
+
+
+def test_python_has_the_sentences_of_the_files(case: Case) -> None:
+    d, record = case.diagnosis, json.loads((case.folder / "verdict.json").read_text(encoding="utf-8"))
+    back = DiagnosisRecord(case.folder, "diagnose", True)
+    assert isinstance(d, Diagnosis)
+    assert d.headline == back.headline == tuple(record["headline"])
+    assert d.words == back.words == tuple(record["summary"])
+    assert d.confidence == back.confidence == record["confidence"] == record["effects"][0]["confidence"]
+    assert d.label == back.label == IDENTIFIED
+    nameless = Diagnosis.of(replace(no_gap(d, gap=True), supports={}))
+    assert nameless.label == "no gap after corrections"
+    assert math.isnan(nameless.confidence)
 
 
 def test_what_a_correction_moves_is_its_sensitivity_times_its_value(case: Case) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import pickle
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,8 +12,8 @@ import pytest
 from hidden import measure, study
 
 from tyrefem.diagnose.heat_words import inside_share
-from tyrefem.diagnose.verdict import IDENTIFIED, UNEXPLAINED
-from tyrefem.diagnose.words import verdict_words
+from tyrefem.diagnose.verdict import IDENTIFIED, PARTLY, UNEXPLAINED
+from tyrefem.diagnose.words import missing_heat_words, verdict_words
 from tyrefem.reports.diagnosis_missing import by_run, drawn_sources
 
 PLACE = {"station": "100 mm", "width": "13 mm"}
@@ -74,6 +75,10 @@ def test_heat_that_begins_late_is_dated_and_its_draft_effect_is_identified(
     assert not any(entry["in_law"] for entry in law["exponents"])
     assert law["amplitude_W_m3"] == pytest.approx(4e5, rel=0.25)
     assert all(sentence in verdict_words(d) for sentence in law["sentences"])
+    # Beside a partly identified effect the law is told as that of the heat beside it.
+    beside = replace(d, judgement=replace(d.judgement, verdict=PARTLY))
+    assert missing_heat_words(beside)[0].startswith("The heat that is missing beside it has a law over these runs: ")
+    assert missing_heat_words(beside)[1:] == missing_heat_words(d)[2:]
     rows = {row["name"]: row for row in law["signatures"]}
     assert rows["sun"]["kind"] == "effect"
     assert rows["sun"]["likeness"] < 0.9

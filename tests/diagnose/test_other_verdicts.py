@@ -122,7 +122,7 @@ def test_unexplained_says_what_the_amended_study_has_and_what_to_do_next(case: C
     assert "The amended study has an entry of missing heat, which describe" in " ".join(words)
     assert any(sentence.startswith("In the amended study the rms") for sentence in words)
     worst = case.diagnosis.where.sort_values("sigma", ascending=False).iloc[0]
-    assert words[-2].startswith(f"Next: check {worst['sensor']} in {worst['run']}")
+    assert words[-2].startswith(f"Next: check {worst['sensor']} in run {worst['run']},")
     assert "docs/effects.md" in words[-1]
 
 

@@ -11,8 +11,10 @@ from hidden import WARMER, measure, study
 import tyrefem as tf
 from tyrefem.diagnose import DiagnosisData
 from tyrefem.diagnose.headline import headline
+from tyrefem.diagnose.prior_sensitivity import FACTORS, PROBABILITY
 from tyrefem.diagnose.verdict import PARTLY
-from tyrefem.diagnose.words import verdict_words
+from tyrefem.diagnose.words import missing_heat_words, verdict_words
+from tyrefem.reports.diagnosis_missing import tells_missing_heat
 
 #: Half waves of ln(heat) along the meridian: up to 65 % more heat at the crown, less at the sidewall.
 SHAPE = {1: 0.3, 2: 0.2}
@@ -63,7 +65,48 @@ def test_words_and_record_tell_what_else_is_wrong(hidden: tuple[DiagnosisData, P
     assert names[0] == "strain energy"
     assert {"none", "missing heat", "strain law barrel"} < set(names)
     assert record["discrepancies"][0]["effects"]["hot-road"] >= 0.9
-    assert 0 < record["confidence"] <= record["effects"][0]["probability"]
+    assert 0 < record["confidence"] <= record["effects"][0]["probability"] <= 1
+    assert record["confidence"] == record["effects"][0]["confidence"]
+    # A probability is never rounded to 100 %.
+    assert not [reason for reason in record["reasons"] if "100 %" in reason or "100.0 %" in reason]
+    # Excluded models are told.
+    counted = [model.words for model in d.robustness.counted]
+    for model in (*d.robustness.models, *d.robustness.laws):
+        if model.words not in counted:
+            assert model.words in words[2].split("not counted, as the data exclude")[1]
+
+
+def test_what_is_left_is_drawn_and_has_a_law_where_it_is_clear(hidden: tuple[DiagnosisData, Path]) -> None:
+    d, folder = hidden
+    text = (folder / "diagnosis.html").read_text(encoding="utf-8")
+    assert tells_missing_heat(d) is bool(d.missing.over_time is not None and d.missing.over_time.clear)
+    assert (folder / "missing-heat-course.png").is_file() is tells_missing_heat(d)
+    assert ("<h2>Heat of unknown origin</h2>" in text) is tells_missing_heat(d)
+    laws = missing_heat_words(d)
+    assert bool(laws) is (d.law is not None)
+    assert all(sentence in verdict_words(d) for sentence in laws)
+    if d.law is not None and d.law.holds:
+        assert laws[0].startswith("The heat that is missing beside it has a law over these runs: ")
+        (file,) = (folder / "effects").glob("inferred_*.py")
+        assert any(f"effects/{file.name}" in sentence for sentence in verdict_words(d))
+
+
+def test_priors_of_the_named_effect_are_tried(hidden: tuple[DiagnosisData, Path]) -> None:
+    d, _ = hidden
+    tried = {(change.prior, change.factor) for change in d.prior_sensitivity if change.effect == "hot-road"}
+    assert tried >= {(PROBABILITY, factor) for factor in FACTORS}
+    for change in d.prior_sensitivity:
+        if not change.decides:
+            assert (change.verdict, change.best) == (PARTLY, "hot-road")
+    # With its own priors the share is that of the verdict; a third of the odds of the weakest model is a third there.
+    least = min(d.robustness.least("hot-road"), 1 - 1e-12)
+    weaker = next(
+        change
+        for change in d.prior_sensitivity
+        if (change.effect, change.prior, change.factor) == ("hot-road", PROBABILITY, FACTORS[0])
+    )
+    if not weaker.decides:
+        assert weaker.share / (1 - weaker.share) == pytest.approx(least / (1 - least) / 3, rel=1e-3)
 
 
 def test_the_amended_study_has_the_effect_and_the_strain_energy(hidden: tuple[DiagnosisData, Path]) -> None:

@@ -12,7 +12,7 @@ from tyrefem.plan import steps as test_plan
 
 
 class Diagnosis(diagnosis.DiagnosisData):
-    """Result of a diagnosis, with `to_dict` and `save`."""
+    """Result of a diagnosis, with its sentences (`headline`, `words`), `to_dict` and `save`."""
 
     def _repr_html_(self) -> str | None:
         from tyrefem.reports.notebook import diagnosis_page
@@ -23,6 +23,34 @@ class Diagnosis(diagnosis.DiagnosisData):
     def of(cls, data: diagnosis.DiagnosisData) -> Diagnosis:
         """Convert a diagnosis, and every further look at the same data, to this class."""
         return with_verbs(cls, data, again=None if data.again is None else cls.of(data.again))
+
+    @cached_property
+    def label(self) -> str:
+        """The verdict as people read it: "no gap after corrections" if the original study deviates clearly."""
+        from tyrefem.diagnose.headline import label
+
+        return label(self)
+
+    @cached_property
+    def headline(self) -> tuple[str, str, str]:
+        """What is wrong, how sure, and what to do next, a sentence each."""
+        from tyrefem.diagnose.headline import headline
+
+        return headline(self)
+
+    @cached_property
+    def words(self) -> tuple[str, ...]:
+        """The verdict in more sentences: amounts, strain laws, missing heat and its law, priors, noise."""
+        from tyrefem.diagnose.words import verdict_words
+
+        return verdict_words(self)
+
+    @cached_property
+    def confidence(self) -> float:
+        """Smallest probability of a named effect, also without one sensor or run; NaN without a name."""
+        from tyrefem.diagnose.discrepancy_record import confidence
+
+        return confidence(self)
 
     def to_dict(self) -> dict[str, Any]:
         """Contents of `verdict.json`."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import math
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -50,9 +51,25 @@ class DiagnosisRecord(Record):
         return shown(lambda: diagnosis_record_page(self))
 
     @property
+    def label(self) -> str:
+        """The verdict as people read it: "no gap after corrections" if the original study deviates clearly."""
+        return str(self.summary.get("label", self.verdict))
+
+    @property
     def headline(self) -> tuple[str, ...]:
         """What is wrong, how sure, and what to do next, a sentence each."""
         return tuple(self.summary["headline"])
+
+    @property
+    def words(self) -> tuple[str, ...]:
+        """The verdict in more sentences."""
+        return tuple(self.summary["summary"])
+
+    @property
+    def confidence(self) -> float:
+        """Smallest probability of a named effect, also without one sensor or run; NaN without a name."""
+        least = self.summary.get("confidence")
+        return math.nan if least is None else float(least)
 
     @property
     def named(self) -> dict[str, float]:

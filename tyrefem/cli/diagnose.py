@@ -103,20 +103,21 @@ def diagnose(
             page = diagnosis.save(folder)
         store.clear()
     answer_with(diagnosis.to_dict())
+    from tyrefem.diagnose.draft_effect import EFFECTS, draft_effects
     from tyrefem.diagnose.headline import QUESTIONS, headline, label
-    from tyrefem.diagnose.heat_words import heat_words
-    from tyrefem.diagnose.law_words import law_words
-    from tyrefem.diagnose.verdict import UNEXPLAINED
-    from tyrefem.diagnose.words import noise_words
+    from tyrefem.diagnose.words import missing_heat_words, noise_words
 
     if store.resumed:
         say(f"{store.resumed} simulations of an interrupted diagnosis were reused")
     for question, sentence in zip((label(diagnosis).upper(), *QUESTIONS[1:]), headline(diagnosis), strict=True):
         say(f"{question}: {sentence}")
-    heat = (heat_words(diagnosis), *law_words(diagnosis)) if diagnosis.verdict == UNEXPLAINED else ()
     conformal = () if diagnosis.conformal is None else (diagnosis.conformal.words(diagnosis.judgement.ranking),)
-    for sentence in (*(f"{each}." for each in heat), *conformal, *noise_words(diagnosis)):
+    for sentence in (*missing_heat_words(diagnosis), *conformal, *noise_words(diagnosis)):
         say(sentence)
+    for name in draft_effects(diagnosis):
+        say(
+            f"draft effect: {folder / EFFECTS / name}; judge it by: tyrefem diagnose STUDY --effects {folder / EFFECTS}"
+        )
     for note in dict.fromkeys(note for look in diagnosis.looks for note in look.notes):
         say(f"Note: {note}")
     say(f"results in {folder}; read {page}, run {folder / 'amended.toml'}")

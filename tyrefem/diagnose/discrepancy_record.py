@@ -29,7 +29,7 @@ def confidence(d: DiagnosisData) -> float:
 
     NaN without a named effect. An effect that can show only at one sensor, or in one run, is not left without it.
     """
-    return min((member_confidence(d, member) for member in d.best.members), default=math.nan) if d.supports else math.nan
+    return min((member_confidence(d, member) for member in d.supports), default=math.nan)
 
 
 def member_confidence(d: DiagnosisData, member: Candidate) -> float:

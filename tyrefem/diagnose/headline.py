@@ -16,8 +16,15 @@ from tyrefem.diagnose.heat_sources import STATED, UnknownSource
 from tyrefem.diagnose.heat_words import course_words, source_place
 from tyrefem.diagnose.materiality import Movement, largest_change
 from tyrefem.diagnose.numbers import amount, correction_subject, correction_words, percent, run_words
-from tyrefem.diagnose.partly_words import besides_words, explaining_words, least_probable, least_words, or_outside_words, ranges
-from tyrefem.diagnose.pulls import Pull, pulls
+from tyrefem.diagnose.partly_words import (
+    besides_words,
+    explaining_words,
+    least_probable,
+    least_words,
+    or_outside_words,
+    ranges,
+)
+from tyrefem.diagnose.pulls import Pull
 from tyrefem.diagnose.result_tables import clearest, competing_sets, inclusion_probability
 from tyrefem.diagnose.strain_words import law_in_short, law_sure
 from tyrefem.diagnose.support_words import alone_words, stated_words
@@ -101,8 +108,11 @@ class CorrectionMove(Brief):
 
 def corrections(d: DiagnosisData) -> tuple[CorrectionMove, ...]:
     """The corrections of the amended study, those that move a reading most first."""
-    kept = {change.unknown for change in d.changes if not change.missing}
-    made = [CorrectionMove(pull, _moved(d, pull)) for pull in pulls(d.best) if pull.unknown in kept]
+    made = []
+    for change in d.changes:
+        if not change.missing:
+            pull = Pull(change.unknown, change.x, change.sd, change.x / change.unknown.sd)
+            made.append(CorrectionMove(pull, _moved(d, pull)))
     return tuple(sorted(made, key=lambda each: -abs(each.move.kelvin)))
 
 

@@ -12,6 +12,7 @@ from tyrefem.diagnose.heat_words import station_words
 from tyrefem.diagnose.law_places import FILM, FLUX, LOSS, UNITS, WHOLE_SURFACES, LawPlace
 from tyrefem.diagnose.law_terms import ABOVE, DEFLECTION, LOAD, NO_SWITCH, PRESSURE, REST, ROLLING, SPEED, WARM
 from tyrefem.diagnose.numbers import amount, percent
+from tyrefem.diagnose.verdict import PARTLY
 
 if TYPE_CHECKING:
     from tyrefem.diagnose.diagnosis import DiagnosisData
@@ -42,7 +43,9 @@ def law_words(d: DiagnosisData) -> tuple[str, ...]:
         return ("No law of speed, load, pressure, temperature and time describes this heat in all runs",)
     law = heat.law
     sign = "" if law.amplitude > 0 else "cooling, "
-    first = f"Its law over these runs: {sign}{law_place_words(d, heat.place)}, {law_formula(law)}{_when(heat)}"
+    heads = {PARTLY: "The heat that is missing beside it has a law over these runs"}
+    head = heads.get(d.verdict, "Its law over these runs")
+    first = f"{head}: {sign}{law_place_words(d, heat.place)}, {law_formula(law)}{_when(heat)}"
     size = amount(law.amplitude, law.sd, UNITS[heat.place.kind]) if UNITS[heat.place.kind] != "1" else (
         f"{100 * law.amplitude:+.0f} ± {100 * law.sd:.0f} %"
     )  # fmt: skip

@@ -9,6 +9,7 @@ from typing import NamedTuple
 from tyrefem.diagnose.candidates import Candidate, Members
 from tyrefem.diagnose.discrepancy import NONE
 from tyrefem.diagnose.free_heat import FreeHeat
+from tyrefem.diagnose.numbers import at_least, percent
 from tyrefem.diagnose.robustness import Robustness, UnderDiscrepancy
 from tyrefem.diagnose.settings import DiagnosisSettings
 from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, PARTLY, UNEXPLAINED, Judgement
@@ -67,7 +68,7 @@ def beside_discrepancies(
     elif judgement.verdict == CONFOUNDED:
         if leading.name == NONE:
             return revision
-        asked_for = f"the data ask for {leading.words} ({_percent(leading.probability)})"
+        asked_for = f"the data ask for {leading.words} ({percent(leading.probability)})"
         if robustness.as_it_is < NOT_EXCLUDED:
             revision = revision.doubted(asked_for)
         else:
@@ -105,9 +106,8 @@ def beside_discrepancies(
             return revision._replace(reasons=(*revision.reasons, doubt))
         return revision.doubted(doubt)
     smallest = min(robustness.least(member.key) for member in members)
-    reason = (
-        f"{' + '.join(member.key for member in members)} acts with at least {_percent(smallest)} whatever else is wrong"
-    )
+    keys = " + ".join(member.key for member in members)
+    reason = f"{keys} acts with {at_least(smallest)} probability whatever else is wrong"
     return revision._replace(verdict=PARTLY, reasons=(*revision.reasons, reason), members=members)
 
 
@@ -115,8 +115,8 @@ def _doubt(robustness: Robustness, member: Candidate) -> str:
     """Why a member of an identified set is not needed beside a probable discrepancy."""
     against = min(robustness.models, key=lambda model: (model.named.get(member.key, 0.0) - 1) * model.probability)
     return (
-        f"with {against.words}, for which the data speak ({_percent(against.probability)}), "
-        f"{member.key} acts with {_percent(against.named.get(member.key, 0.0))} only"
+        f"with {against.words}, for which the data speak ({percent(against.probability)}), "
+        f"{member.key} acts with {percent(against.named.get(member.key, 0.0))} only"
     )
 
 
@@ -126,7 +126,3 @@ def _predicts_held_out(model: UnderDiscrepancy, members: Members) -> bool:
         return True
     with_them, without = model.held_out(members)
     return with_them >= without
-
-
-def _percent(share: float) -> str:
-    return f"{100 * share:.0f} %"

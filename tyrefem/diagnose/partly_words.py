@@ -64,9 +64,12 @@ def tried_words(d: DiagnosisData) -> str:
     """What else may be wrong, as it was tried."""
     robust = d.robustness
     assert robust is not None
-    tried = "; ".join(model.words for model in robust.counted if model.name != NONE)
-    refuted = ", ".join(law.words for law in robust.laws if law.refuted)
-    tried += f" (not counted, as the data refute it: {refuted})" if refuted else ""
+    tried = (
+        "; ".join(model.words for model in robust.counted if model.name != NONE) or "nothing else that the data allow"
+    )
+    left_out = [model.words for model in (*robust.models, *robust.laws) if model not in robust.counted]
+    them = "them" if len(left_out) > 1 else "it"
+    tried += f" (not counted, as the data exclude {them}: {'; '.join(left_out)})" if left_out else ""
     return f"{tried} (not tried: strain law {', '.join(robust.untried)})" if robust.untried else tried
 
 

@@ -13,7 +13,7 @@ from tyrefem.diagnose.discrepancy_record import (
     possible_effects,
     support_row,
 )
-from tyrefem.diagnose.headline import headline
+from tyrefem.diagnose.headline import headline, label
 from tyrefem.diagnose.heat_words import is_told, source_place, source_words
 from tyrefem.diagnose.law_record import law_record
 from tyrefem.diagnose.result_tables import candidate_rows, clearest, parameters, set_rows
@@ -44,6 +44,7 @@ def record(d: DiagnosisData) -> dict[str, Any]:
     named = d.best.members if d.verdict in (IDENTIFIED, CONFOUNDED, PARTLY) else ()
     contents = {
         "verdict": d.verdict,
+        "label": label(d),
         "headline": list(headline(d)),
         "summary": list(verdict_words(d)),
         "reasons": list(d.judgement.reasons),

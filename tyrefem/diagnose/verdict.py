@@ -12,7 +12,7 @@ from tyrefem.brief import Brief
 from tyrefem.diagnose.candidates import Candidate, Members
 from tyrefem.diagnose.fits import FittedSet
 from tyrefem.diagnose.materiality import Movement, Movements
-from tyrefem.diagnose.numbers import parameter_name
+from tyrefem.diagnose.numbers import parameter_name, percent
 from tyrefem.diagnose.pulls import improbable_pulls
 from tyrefem.diagnose.selection import ScoredSet
 from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
@@ -273,7 +273,7 @@ def judge(
         return verdict(CONFOUNDED, f"the fit of {best.key} has not converged, so its probability is not certain")
     sure = probability(ranking)
     if sure >= settings.named_probability and best.probability >= settings.alone_probability:
-        reasons.append(f"{best.key} is missing with {100 * sure:.1f} % probability, summed over all sets of effects")
+        reasons.append(f"{best.key} is missing with {percent(sure)} probability, summed over all sets of effects")
         return verdict(IDENTIFIED)
     more = f"; and {len(credible) - SHOWN} more" if len(credible) > SHOWN else ""
     shown = "; ".join(entry.key for entry in credible[:SHOWN])

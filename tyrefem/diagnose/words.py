@@ -11,7 +11,7 @@ from tyrefem.diagnose.discrepancy import NONE
 from tyrefem.diagnose.draft_effect import EFFECTS, draft_effects
 from tyrefem.diagnose.heat_words import heat_words
 from tyrefem.diagnose.law_words import law_words
-from tyrefem.diagnose.numbers import amount, correction_words, parameter_name, percent
+from tyrefem.diagnose.numbers import amount, correction_words, parameter_name, percent, run_words
 from tyrefem.diagnose.partly_words import (
     beside_it_words,
     besides_words,
@@ -59,7 +59,7 @@ def effect_sentence(candidate: Candidate, fit: FittedSet) -> str:
     first = next(iter(candidate.amplitudes), None)
     negative = first is not None and first.value(fit.values.get(first, 0.0)) < 0
     sentence = candidate.effect.opposite if negative and candidate.effect.opposite else candidate.effect.sentence
-    return f"In {' and '.join(candidate.runs)} only: {sentence}" if candidate.runs else sentence
+    return f"In {' and '.join(map(run_words, candidate.runs))} only: {sentence}" if candidate.runs else sentence
 
 
 def effect_words(candidate: Candidate, fit: FittedSet, move: Movement | None = None) -> str:
@@ -123,14 +123,21 @@ def _unexplained(d: DiagnosisData, closing: str) -> tuple[str, ...]:
     return (
         "No effect in the catalogue explains the deviation.",
         *d.judgement.doubts,
-        f"{heat_words(d)}.",
+        *missing_heat_words(d)[:1],
         *(sentence for sentence in (explaining_words(d), beside_it_words(d)) if sentence),
-        *(f"{sentence}." for sentence in law_words(d)),
+        *missing_heat_words(d)[1:],
         *partly,
         *([described] if entries else []),
         closing,
         *_next_step(d),
     )
+
+
+def missing_heat_words(d: DiagnosisData) -> tuple[str, ...]:
+    """Heat of unknown origin and its law over the runs, in sentences; empty where the verdict leaves none."""
+    if d.verdict == UNEXPLAINED and not (d.better_law is not None and d.better_law.alone):
+        return (f"{heat_words(d)}.", *(f"{sentence}." for sentence in law_words(d)))
+    return tuple(f"{sentence}." for sentence in law_words(d)) if d.verdict == PARTLY else ()
 
 
 def part_words(d: DiagnosisData, member: Candidate) -> str:
@@ -150,7 +157,8 @@ def _partly(d: DiagnosisData, closing: str) -> tuple[str, ...]:
         f"{besides[0].upper()}{besides[1:]}.",
         f"Tried beside it: {tried_words(d)}.",
         *support_words(d),
-        *(f"{sentence}." for sentence in law_words(d)),
+        *missing_heat_words(d),
+        *draft_words(d),
         *d.judgement.doubts,
         closing,
     )
@@ -160,14 +168,19 @@ def _next_step(d: DiagnosisData) -> tuple[str, ...]:
     """What to do if no effect explains the deviation: where it is clearest, and how to go on."""
     row = clearest(d)
     return (
-        f"Next: check {row['sensor']} in {row['run']}, where the deviation is clearest "
+        f"Next: check {row['sensor']} in {run_words(str(row['run']))}, where the deviation is clearest "
         f"({row['mean_K']:+z.1f} K on average {phase_words(str(row['phase']))}): its place and channel, the run's "
         "drive, and the stated uncertainties.",
         "A cause outside the catalogue can be written as an effect (docs/effects.md) and diagnosed again.",
-        *(
-            f"A draft with this law is in {EFFECTS}/{name}: check it, then diagnose again with --effects {EFFECTS}."
-            for name in draft_effects(d)
-        ),
+        *draft_words(d),
+    )
+
+
+def draft_words(d: DiagnosisData) -> tuple[str, ...]:
+    """Where the draft effect is, and how it is judged; empty without a law that holds."""
+    return tuple(
+        f"A draft with this law is in {EFFECTS}/{name}: check it, then diagnose again with --effects {EFFECTS}."
+        for name in draft_effects(d)
     )
 
 

@@ -14,8 +14,8 @@ from tyrefem.diagnose.amend import Change, difference
 from tyrefem.diagnose.candidates import key_of
 from tyrefem.diagnose.discrepancy_record import effect_probability
 from tyrefem.diagnose.draft_effect import EFFECTS, draft_effects
-from tyrefem.diagnose.headline import QUESTIONS, headline, label
-from tyrefem.diagnose.numbers import amount, base_name, parameter_name, percent
+from tyrefem.diagnose.headline import QUESTIONS, corrections, headline, label
+from tyrefem.diagnose.numbers import amount, base_name, parameter_name, percent, run_words
 from tyrefem.diagnose.prior_sensitivity import prior_words
 from tyrefem.diagnose.record import AMENDED, record, where
 from tyrefem.diagnose.result_tables import candidate_rows, finite, history_table, set_rows, where_table
@@ -29,6 +29,7 @@ from tyrefem.mechanics.strain_laws import strain_law
 from tyrefem.output import atomic_folder, write_json
 from tyrefem.reports.diagnosis_figures import pictures
 from tyrefem.reports.diagnosis_law import law_block
+from tyrefem.reports.diagnosis_missing import tells_missing_heat
 from tyrefem.reports.diagnosis_summary import SUMMARY, summary
 
 if TYPE_CHECKING:
@@ -88,6 +89,7 @@ def page(d: DiagnosisData, images: Mapping[str, bytes], *, version: str) -> str:
         loader=PackageLoader("tyrefem.reports", "."), autoescape=True, undefined=StrictUndefined, trim_blocks=True,
         lstrip_blocks=True,
     )  # fmt: skip
+    place = where(d)
     embedded = {name: base64.b64encode(png).decode("ascii") for name, png in images.items()}
     return environment.get_template("diagnosis.html").render(
         d=d,
@@ -95,7 +97,7 @@ def page(d: DiagnosisData, images: Mapping[str, bytes], *, version: str) -> str:
         label=label(d),
         headline=list(zip(QUESTIONS, headline(d), strict=True)),
         sentences=words.verdict_words(d),
-        place=where(d),
+        place=place,
         numbers=_numbers(d),
         named=_named(d),
         candidates=[_candidate(row) for row in candidate_rows(d)],
@@ -111,7 +113,11 @@ def page(d: DiagnosisData, images: Mapping[str, bytes], *, version: str) -> str:
         pictures=embedded,
         shown=SHOWN,
         law=law_block(d),
-        unexplained=d.verdict == UNEXPLAINED and not (d.better_law is not None and d.better_law.alone),
+        unexplained=d.verdict == UNEXPLAINED and tells_missing_heat(d),
+        partly=d.verdict == PARTLY,
+        missing=tells_missing_heat(d),
+        place_run=run_words(place["run"]),
+        negligible=f"{d.gap.settings.negligible:g}",
         discrepancies=_discrepancies(d),
         laws=_laws(d),
         confounded=d.verdict == CONFOUNDED,
@@ -218,8 +224,17 @@ def _where(d: DiagnosisData) -> list[dict[Any, Any]]:
 
 
 def _corrections(d: DiagnosisData) -> list[dict[str, str]]:
-    """Base numbers and sensors that the amended study corrects: original -> amended, with standard deviation."""
-    return [_correction(d, change) for change in d.changes if not change.missing]
+    """Base numbers and sensors that the amended study corrects: original -> amended, with standard deviation.
+
+    Each with its size in standard deviations of what was stated, and the largest change of a reading by it.
+    """
+    moves = {each.pull.unknown: each for each in corrections(d)}
+    rows = []
+    for change in (change for change in d.changes if not change.missing):
+        each = moves[change.unknown]
+        size = f"{each.move.kelvin:+z.1f} K ({each.move.sensor}, {each.move.run})"
+        rows.append(_correction(d, change) | {"pull": f"{each.pull.pull:+z.1f}", "moves": size})
+    return rows
 
 
 def _correction(d: DiagnosisData, change: Change) -> dict[str, str]:

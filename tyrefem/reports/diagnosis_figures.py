@@ -12,10 +12,9 @@ from tyrefem.diagnose.candidates import key_of
 from tyrefem.diagnose.numbers import percent
 from tyrefem.diagnose.result_tables import candidate_rows, rms_table, set_rows
 from tyrefem.diagnose.runs import MeasuredDrive, MeasuredSensor
-from tyrefem.diagnose.verdict import UNEXPLAINED
 from tyrefem.reports.diagnosis_energy import energy_figures
 from tyrefem.reports.diagnosis_gap import AFTER, BEFORE, HELD_OUT, gap_figure
-from tyrefem.reports.diagnosis_missing import missing_figures
+from tyrefem.reports.diagnosis_missing import missing_figures, tells_missing_heat
 from tyrefem.reports.diagnosis_sections import residual_figures
 from tyrefem.reports.figures.phases import Phase, draw_phases, make_room
 from tyrefem.reports.figures.style import (
@@ -42,7 +41,7 @@ if TYPE_CHECKING:
 
 def pictures(d: DiagnosisData) -> dict[str, bytes]:
     """File name -> PNG: ``gap``, ``rms``, ``residual-map``, ``probabilities``, histories; ``missing-heat`` if
-    unexplained; ``energy-share`` if another strain energy is the most probable discrepancy.
+    the verdict tells of some; ``energy-share`` if another strain energy is the most probable discrepancy.
     """
     drawn = {
         "gap.png": gap_figure(d),
@@ -50,7 +49,7 @@ def pictures(d: DiagnosisData) -> dict[str, bytes]:
         **residual_figures(d),
         "probabilities.png": probabilities_figure(d),
     }
-    if d.verdict == UNEXPLAINED:
+    if tells_missing_heat(d):
         drawn |= missing_figures(d)
     drawn |= energy_figures(d)
     for number, run in enumerate(d.gap.runs):

@@ -52,7 +52,7 @@ def law_block(d: DiagnosisData) -> Markup:
 
 def _row(d: DiagnosisData, row: LawSignature) -> dict[str, str]:
     exponents = {
-        name: f"{row.exponents[name]:.1f}" if name in row.exponents else "" for name in (SPEED, LOAD, PRESSURE)
+        name: f"{row.exponents[name]:z.1f}" if name in row.exponents else "" for name in (SPEED, LOAD, PRESSURE)
     }
     others = [f"{name}^{value:.0f}" for name, value in row.exponents.items() if name not in exponents]
     place = f"s = {row.station * 1e3:.0f} mm, {row.where}" if math.isfinite(row.station) else ", ".join(others)

@@ -12,6 +12,7 @@ from tyrefem.diagnose.heat_courses import BEGINS, ENDS
 from tyrefem.diagnose.heat_patches import ALL_LAYERS, INNER, OUTER
 from tyrefem.diagnose.heat_words import is_told
 from tyrefem.diagnose.numbers import amount
+from tyrefem.diagnose.verdict import PARTLY, UNEXPLAINED
 from tyrefem.reports.diagnosis_heat import heat_course_figure
 from tyrefem.reports.diagnosis_sections import DIVERGING, draw_ground
 from tyrefem.reports.figures.canvas import Canvas, canvas
@@ -42,6 +43,16 @@ if TYPE_CHECKING:
     from tyrefem.geometry import Section
 
 Array = NDArray[np.float64]
+
+
+def tells_missing_heat(d: DiagnosisData) -> bool:
+    """Whether page and pictures show heat of unknown origin: unexplained, or clear sources beside the named effects.
+
+    Not where another strain law explains the deviation by itself.
+    """
+    if d.verdict == UNEXPLAINED:
+        return d.better_law is None or not d.better_law.alone
+    return d.verdict == PARTLY and d.missing.over_time is not None and bool(d.missing.over_time.clear)
 
 
 def missing_figures(d: DiagnosisData) -> dict[str, Figure]:

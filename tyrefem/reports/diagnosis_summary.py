@@ -14,10 +14,11 @@ from tyrefem.diagnose.heat_words import course_words, source_place
 from tyrefem.diagnose.law_words import law_words
 from tyrefem.diagnose.numbers import amount, correction_amount, correction_subject, percent
 from tyrefem.diagnose.result_tables import set_rows
-from tyrefem.diagnose.verdict import NO_GAP, UNEXPLAINED
-from tyrefem.diagnose.words import effect_amounts, effect_sentence, next_words
+from tyrefem.diagnose.verdict import NO_GAP, PARTLY, UNEXPLAINED
+from tyrefem.diagnose.words import effect_amounts, effect_sentence, next_words, noise_words
 from tyrefem.output import versions
 from tyrefem.reports.diagnosis_gap import gap_figure
+from tyrefem.reports.diagnosis_missing import tells_missing_heat
 from tyrefem.reports.figures.style import picture
 
 if TYPE_CHECKING:
@@ -107,7 +108,8 @@ def _height(row: tuple[str, ...], table: SummaryTable) -> int:
 
 def summary_tables(d: DiagnosisData) -> tuple[SummaryTable, ...]:
     """The tables of the summary; those without rows are left out."""
-    tables = (_missing(d), _effects(d), _rms(d), _corrections(d), _sets(d))
+    sets = _beside(d) if d.verdict == PARTLY else _sets(d)
+    tables = (_missing(d), _effects(d), _rms(d), _corrections(d), sets)
     return tuple(table for table in tables if table.rows)
 
 
@@ -127,8 +129,8 @@ def _effects(d: DiagnosisData) -> SummaryTable:
 
 
 def _missing(d: DiagnosisData) -> SummaryTable:
-    """The stated sources of missing heat, if no effect explains the deviation."""
-    sources = d.missing.over_time.clear if d.missing.over_time and d.verdict not in _NAMED else ()
+    """The stated sources of missing heat, if the verdict tells of some."""
+    sources = d.missing.over_time.clear if d.missing.over_time and tells_missing_heat(d) else ()
     rows = [
         (
             source_place(d, source),
@@ -139,7 +141,8 @@ def _missing(d: DiagnosisData) -> SummaryTable:
         for source in sources
     ]
     head = ("missing heat (+) or missing cooling (-)", "amount ± sd", "moves at most", "course in time")
-    return SummaryTable("Heat of unknown origin", head, tuple(rows[:ROWS]), (0, 3))
+    about = "What is left, as heat of unknown origin (not in the amended study)"
+    return SummaryTable(about if d.verdict == PARTLY else "Heat of unknown origin", head, tuple(rows[:ROWS]), (0, 3))
 
 
 #: Verdicts that name every cause.
@@ -172,6 +175,23 @@ def _corrections(d: DiagnosisData) -> SummaryTable:
     more = f"; the {ROWS} that move most of {len(shown)}" if len(shown) > ROWS else ""
     head = ("number or sensor", "change ± sd", "in sd of what was stated", "moves at most")
     return SummaryTable(f"Corrections fitted together with it{more}", head, tuple(rows))
+
+
+def _beside(d: DiagnosisData, most: int = 4) -> SummaryTable:
+    """The partly identified effects beside each discrepancy model."""
+    models = d.robustness.models[:most] if d.robustness else ()
+    keys = [member.key for member in d.best.members]
+    rows = [
+        (
+            model.words,
+            percent(model.probability),
+            "; ".join(f"{key} {percent(model.named.get(key, 0.0))}" for key in keys),
+        )
+        for model in models
+    ]
+    return SummaryTable(
+        "If more is wrong than effects", ("the study with", "probability", "effects beside it"), tuple(rows), (0, 2)
+    )
 
 
 def _sets(d: DiagnosisData, most: int = 3) -> SummaryTable:
@@ -216,4 +236,4 @@ def _made(d: DiagnosisData) -> list[str]:
     first = [f"Next experiment: {following}"] if following else []
     if d.verdict not in _NAMED:
         first += [f"{sentence}." for sentence in law_words(d)[:1]]
-    return [*first, *lines]
+    return [*first, *noise_words(d), *lines]

@@ -206,7 +206,7 @@ def diagnosis_page(diagnosis: DiagnosisData) -> str:
     wrong, sure, _ = headline(diagnosis)
     sets = diagnosis.judgement.ranking[:BARS]
     bars = {entry.key or "no effect": (100 * float(entry.probability), PLAIN) for entry in sets}
-    colour = GOOD if diagnosis.verdict in (IDENTIFIED, NO_GAP) else BAD
+    colour = GOOD if label(diagnosis) in (IDENTIFIED, NO_GAP) else BAD
     verdict = f"{label(diagnosis)}: {wrong} {sure}"
     return page(diagnosis, verdict, bars_picture(bars, "%", "probability of sets of effects"), colour=colour)
 
@@ -214,8 +214,8 @@ def diagnosis_page(diagnosis: DiagnosisData) -> str:
 def diagnosis_record_page(record: Any) -> str:
     """A diagnosis from its folder, as `diagnosis_page` has it: an `api.DiagnosisRecord`."""
     bars = {name: (100 * share, PLAIN) for name, share in list(record.sets.items())[:BARS]}
-    colour = GOOD if record.verdict in ("identified", "no gap") else BAD
-    verdict = f"{record.verdict[0].upper()}{record.verdict[1:]}: {' '.join(record.headline[:2])}"
+    colour = GOOD if record.label in ("identified", "no gap") else BAD
+    verdict = f"{record.label[0].upper()}{record.label[1:]}: {' '.join(record.headline[:2])}"
     return page(record, verdict, bars_picture(bars, "%", "probability of sets of effects"), colour=colour)
 
 

@@ -95,6 +95,7 @@ ANSWERS: dict[str, Keys] = {
     "diagnose": {
         **_STUDY, **_VERSIONS, **_AGAIN,
         "verdict": "text: identified, partly identified, confounded, unexplained or no gap.",
+        "label": "text: The verdict as people read it; it may be: no gap after corrections.",
         "headline": "list: What is wrong, how sure, what to do next, a sentence each.",
         "summary": "list: The report in sentences.",
         "reasons": "list: Why this verdict.", "effects": "list: Effects that are named.",
@@ -133,7 +134,8 @@ ANSWERS: dict[str, Keys] = {
         "cases": "list: Hidden effect, verdict and probabilities of each case.",
         "rates": "table: How often the diagnosis is right, with intervals.",
         "reliability": "list: Stated probabilities and how often they held.",
-        "by_effect": "list: Cases by effect.", "failures": "list: Cases that miss a goal, with what was hidden and said.",
+        "by_effect": "list: Cases by effect.",
+        "failures": "list: Cases that miss a goal, with what was hidden and said.",
         "notes": "list: What to know.", "plugins": "list: Your own effects and laws that took part.",
     },
     "sweep": {
