@@ -26,7 +26,7 @@ from tyrefem.diagnose.robustness import Robustness, UnderDiscrepancy
 from tyrefem.diagnose.support import LeftOut, Support
 from tyrefem.diagnose.support_words import alone_words, support_words
 from tyrefem.diagnose.unknowns import Unknown
-from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, PARTLY, UNEXPLAINED
+from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, PARTLY, UNEXPLAINED, certain_members
 from tyrefem.diagnose.words import noise_words, verdict_words
 from tyrefem.reports.diagnosis import page
 from tyrefem.reports.diagnosis_figures import pictures
@@ -172,6 +172,30 @@ def test_a_set_is_stated_at_the_confidence_of_its_weakest_member(case: Case) -> 
         "It is at least 93 % probable without any one sensor or run (least without crown-outer); with all readings at "
         "least 97 %, whatever else is wrong; "
     )
+
+
+def test_the_certain_member_of_a_confounded_set_is_stated_at_its_confidence(case: Case) -> None:
+    d = certain(case.diagnosis)
+    hot = next(each for each in d.judgement.best.members if each.key == "hot-road")
+    assert certain_members(d.judgement, d.gap.settings) == (hot,)
+    weak = replace(d, supports={hot: Support((LeftOut("run", "slow", 0.71),))})
+    assert headline(weak)[1].startswith(
+        "It is at least 71 % probable without any one sensor or run (least without run slow); with all readings 99.0 %;"
+    )
+    assert "It stays at least 71 % probable" in " ".join(verdict_words(weak))
+    assert headline(replace(d, supports={}))[1].startswith("It is 99.0 % probable; ")
+
+
+def test_improbable_corrections_of_a_part_of_the_cause_stand_in_the_first_sentences(case: Case) -> None:
+    d = partly(case.diagnosis)
+    assert "improbable" not in headline(d)[1]
+    load = next(k for k, unknown in enumerate(d.best.unknowns) if unknown.effect is None)
+    mean = d.best.posterior.mean.copy()
+    mean[load] = 5.1 * d.best.unknowns[load].sd
+    strained = replace(d, best=replace(d.best, posterior=replace(d.best.posterior, mean=mean)))
+    sure = headline(strained)[1]
+    assert "The amended study explains the data only with improbable corrections: " in sure
+    assert "+5.1 prior standard deviations" in sure
 
 
 def test_a_member_that_one_sensor_asks_for_is_said_to_be_that_at_once(case: Case) -> None:

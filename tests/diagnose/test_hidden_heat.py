@@ -14,6 +14,7 @@ from hidden import measure, study
 from tyrefem.diagnose.heat_words import inside_share
 from tyrefem.diagnose.verdict import IDENTIFIED, PARTLY, UNEXPLAINED
 from tyrefem.diagnose.words import missing_heat_words, verdict_words
+from tyrefem.reports.diagnosis_law import leading_signatures
 from tyrefem.reports.diagnosis_missing import by_run, drawn_sources
 
 PLACE = {"station": "100 mm", "width": "13 mm"}
@@ -81,6 +82,12 @@ def test_heat_that_begins_late_is_dated_and_its_draft_effect_is_identified(
     assert missing_heat_words(beside)[1:] == missing_heat_words(d)[2:]
     rows = {row["name"]: row for row in law["signatures"]}
     assert rows["sun"]["kind"] == "effect"
+    # The page shows every mechanism, and every effect by the variant that is most alike.
+    shown = leading_signatures(d.signatures)
+    assert {row.name for row in d.signatures if not row.effect} <= {row.name for row in shown}
+    names = [row.name.split(" (")[0] for row in shown if row.effect]
+    assert len(names) == len(set(names)) == len({row.name.split(" (")[0] for row in d.signatures if row.effect})
+    assert [row.likeness for row in shown] == sorted((row.likeness for row in shown), reverse=True)
     assert rows["sun"]["likeness"] < 0.9
     assert "The law of the missing heat" in (tmp_path / "out" / "diagnosis.html").read_text(encoding="utf-8")
     # The heat is large beside its prior; the flux would be smaller beside its own. That tells no surface.

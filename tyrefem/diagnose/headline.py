@@ -24,11 +24,11 @@ from tyrefem.diagnose.partly_words import (
     or_outside_words,
     ranges,
 )
-from tyrefem.diagnose.pulls import Pull
+from tyrefem.diagnose.pulls import Pull, improbable_pulls
 from tyrefem.diagnose.result_tables import clearest, competing_sets, inclusion_probability
 from tyrefem.diagnose.strain_words import law_in_short, law_sure
 from tyrefem.diagnose.support_words import alone_words, stated_words
-from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, PARTLY, RankedSet
+from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, PARTLY, RankedSet, certain_members
 from tyrefem.diagnose.words import (
     besides,
     effect_amounts,
@@ -125,7 +125,7 @@ def _moved(d: DiagnosisData, pull: Pull) -> Movement:
 def _identified(d: DiagnosisData) -> tuple[str, str, str]:
     wrong = _joined([effect_clause(d, member) for member in d.best.members])
     chance = d.judgement.probability
-    sure = f"{stated_words(d, chance, percent(chance))}, among all that was tried; {_closed(d)}."
+    sure = f"{stated_words(d, d.best.members, chance, percent(chance))}, among all that was tried; {_closed(d)}."
     sure = " ".join((sure, *alone_words(d, further=True)))
     values = "values" if len(d.best.members) > 1 else "value"
     step = f"Check that you believe the {values}, then go on with amended.toml"
@@ -135,8 +135,7 @@ def _identified(d: DiagnosisData) -> tuple[str, str, str]:
 
 
 def _confounded(d: DiagnosisData) -> tuple[str, str, str]:
-    best, least = d.judgement.best, d.gap.settings.named_probability
-    certain = [member for member in best.members if d.judgement.named.get(member.key, 0.0) >= least]
+    best, certain = d.judgement.best, certain_members(d.judgement, d.gap.settings)
     step = next_words(d) or "Measure at more places or in other runs, or state what you know of these effects."
     if not d.next_experiment or step.startswith("No tested"):
         step = f"{step} Exclude what you know to be absent (exclude in [diagnosis]), then diagnose again."
@@ -146,8 +145,9 @@ def _confounded(d: DiagnosisData) -> tuple[str, str, str]:
         chance = percent(inclusion_probability(d, best))
         return f"Something is missing, perhaps this: {clause}", f"{_opened(doubt)} (fitted runs alone: {chance}).", step
     if certain:
-        chance = percent(min(d.judgement.named[member.key] for member in certain))
-        sure = f"{_it_is(certain)} {chance} probable; {_closed(d)}.{besides(d, certain)}"
+        least = min(d.judgement.named[member.key] for member in certain)
+        stated = stated_words(d, certain, least, percent(least))
+        sure = " ".join((f"{stated}; {_closed(d)}.{besides(d, certain)}", *alone_words(d, further=True)))
         return _joined([effect_clause(d, member) for member in certain]), f"{sure} {or_outside_words(d)}".rstrip(), step
     sets = competing_sets(d)
     described = ", or ".join(_set_words(entry) for entry in sets[:SETS])
@@ -164,8 +164,10 @@ def _confounded(d: DiagnosisData) -> tuple[str, str, str]:
 def _partly(d: DiagnosisData) -> tuple[str, str, str]:
     clauses = _joined([part_clause(d, member) for member in d.best.members])
     wrong = f"This is a part of it: {clauses.rstrip('.')}; {besides_words(d)}."
-    sure = f"{stated_words(d, least_probable(d), least_words(d))}, whatever else is wrong; {_closed(d)}."
-    sure = " ".join((sure, *alone_words(d, further=True)))
+    stated = stated_words(d, d.best.members, least_probable(d), least_words(d))
+    sure = f"{stated}, whatever else is wrong; {_closed(d)}."
+    strained = improbable_pulls("the amended study", d.best, d.gap.settings)
+    sure = " ".join((sure, *alone_words(d, further=True), *([f"{_upper(strained)}."] if strained else [])))
     rest = _rest(d) or "look for the rest where the page shows what is left: strain energy, tan delta, drive"
     return wrong, sure, f"Check that you believe the range, then {rest}."
 
@@ -263,12 +265,12 @@ def _moves(move: Movement | None) -> str:
     return f", which moves {move.sensor} by up to {move.kelvin:+z.1f} K ({run_words(move.run)})"
 
 
-def _it_is(members: Sequence[Candidate]) -> str:
-    return "They are together" if len(members) > 1 else "It is"
-
-
 def _joined(clauses: Sequence[str]) -> str:
     return f"{'. And: '.join(clauses)}."
+
+
+def _upper(clause: str) -> str:
+    return f"{clause[0].upper()}{clause[1:]}"
 
 
 def _opened(sentence: str) -> str:

@@ -8,16 +8,17 @@ from tyrefem.diagnose.numbers import at_least, percent, run_words
 from tyrefem.diagnose.support import ALONE, RUN, LeftOut
 
 if TYPE_CHECKING:
+    from tyrefem.diagnose.candidates import Members
     from tyrefem.diagnose.diagnosis import DiagnosisData
 
 
-def stated_words(d: DiagnosisData, chance: float, text: str) -> str:
-    """The named set at the confidence of its weakest member, as a clause: "It is at least 97 % probable, ...".
+def stated_words(d: DiagnosisData, members: Members, chance: float, text: str) -> str:
+    """A set at the confidence of its weakest member, as a clause: "It is at least 97 % probable ...".
 
     ``chance``: probability of the set with all readings, ``text``: the same in words. An effect that only one sensor or
     run asks for is said to be that.
     """
-    subject = "They are together" if len(d.best.members) > 1 else "It is"
+    subject = "They are together" if len(members) > 1 else "It is"
     weakest = _weakest(d)
     if weakest is None:
         return f"{subject} {text} probable"

@@ -132,6 +132,12 @@ def probability(ranking: Sequence[RankedSet]) -> float:
     return sum(entry.probability for entry in ranking if keys <= {member.key for member in entry.members})
 
 
+def certain_members(judgement: Judgement, settings: DiagnosisSettings) -> Members:
+    """The members of the most probable set that act with at least 90 % probability, alone or with others."""
+    least = settings.named_probability
+    return tuple(member for member in judgement.best.members if judgement.named.get(member.key, 0.0) >= least)
+
+
 def rejection(key: str, fit: FittedSet, settings: DiagnosisSettings) -> str:
     """The reason why a fitted set is no explanation of the data; empty if there is none. ``key``: name of the set."""
     if fit.p_value < settings.rejected_p:

@@ -26,7 +26,7 @@ from tyrefem.diagnose.pulls import pulls
 from tyrefem.diagnose.result_tables import clearest, competing_sets, inclusion_probability
 from tyrefem.diagnose.strain_words import law_sentences
 from tyrefem.diagnose.support_words import support_words
-from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, PARTLY, UNEXPLAINED
+from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, PARTLY, UNEXPLAINED, certain_members
 
 if TYPE_CHECKING:
     from tyrefem.diagnose.diagnosis import DiagnosisData
@@ -205,8 +205,7 @@ def _corrected(d: DiagnosisData, most: int = 6) -> tuple[str, ...]:
 
 
 def _confounded(d: DiagnosisData, closing: str) -> tuple[str, ...]:
-    best, least = d.judgement.best, d.gap.settings.named_probability
-    certain = [member for member in best.members if d.judgement.named.get(member.key, 0.0) >= least]
+    best, certain = d.judgement.best, certain_members(d.judgement, d.gap.settings)
     clauses = " And: ".join(
         effect_words(member, d.best, d.movements.get(member)) for member in (certain or best.members)
     )
@@ -230,7 +229,7 @@ def _confounded(d: DiagnosisData, closing: str) -> tuple[str, ...]:
     if d.best.at_bound:
         first += " Its best value lies beyond a physical bound, so it is not certain."
     further = [sentence for sentence in (or_outside_words(d), next_words(d)) if sentence]
-    return (first, *d.judgement.doubts, *further, closing)
+    return (first, *support_words(d), *d.judgement.doubts, *further, closing)
 
 
 def missing_words(d: DiagnosisData) -> str:

@@ -60,6 +60,7 @@ from tyrefem.diagnose.verdict import (
     PARTLY,
     UNEXPLAINED,
     Judgement,
+    certain_members,
     inclusion,
     judge,
     ranked,
@@ -289,7 +290,7 @@ class Ranking(Brief):
     movements : what each effect of the best set moves at the sensors.
     robustness : effects beside discrepancy models; None if there is no gap. If the verdict is "partly identified",
         ``best`` is the fit of the effects that act whatever else is wrong, and ``missing`` is the heat beside them.
-    supports : effect of the best set -> its support by the sensors and runs, if the verdict names it.
+    supports : effect of the best set -> its support by the sensors and runs, if the verdict names it or it is certain.
     """
 
     judgement: Judgement
@@ -396,9 +397,10 @@ def rank(
     judgement = judgement.revised(revision.verdict, revision.reasons, revision.doubts)
     partly = revision.members
     if not partly:
-        of_effects = {}
-        if judgement.verdict == IDENTIFIED:
-            of_effects = supports(residuals, best_fit, fits, candidates, prior)
+        of_effects: Mapping[Candidate, Support] = {}
+        if judgement.verdict in (IDENTIFIED, CONFOUNDED) and (sure := certain_members(judgement, settings)):
+            every = supports(residuals, best_fit, fits, candidates, prior)
+            of_effects = {member: every[member] for member in sure}
         return Ranking(judgement, best_fit, null, missing, fit_of, movements_of(best_fit), robust, of_effects)
     alone = fit_of(problem.ordered(partly))
     best_fit = fit_beside(problem, robust.models[0], alone)

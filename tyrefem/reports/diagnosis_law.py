@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from tyrefem.diagnose.draft_effect import EFFECTS, draft_effects
@@ -15,22 +16,26 @@ if TYPE_CHECKING:
     from tyrefem.diagnose.diagnosis import DiagnosisData
     from tyrefem.diagnose.law_signatures import LawSignature
 
-#: Number of rows of the table.
+#: Number of effects in the table; mechanisms are all shown.
 SHOWN = 8
 _TEMPLATE = """<h2>The law of the missing heat</h2>
 {% for sentence in sentences %}<p>{{ sentence }}.</p>
 {% endfor %}
-{% if rows %}<div class="scroll"><table>
+{% macro table(rows) %}<div class="scroll"><table>
 <thead><tr><th class="word">what it would do over these runs</th><th>likeness</th><th>speed^</th><th>load^</th>
 <th>pressure^</th><th class="word">like heat at</th></tr></thead>
 <tbody>
 {% for row in rows %}<tr><td class="word">{{ row.name }}</td><td>{{ row.likeness }}</td><td>{{ row.speed }}</td>
 <td>{{ row.load }}</td><td>{{ row.pressure }}</td><td class="word">{{ row.place }}</td></tr>
-{% endfor %}</tbody></table></div>
+{% endfor %}</tbody></table></div>{% endmacro %}
+{% if rows %}{{ table(rows) }}
 <p class="quiet">Likeness of an effect: share of the law's readings that it can make up, beside base numbers and
 sensors. Likeness of a mechanism: its evidence below that of the best law. Exponents of an effect: those of the heat
-that resembles it.</p>
+that resembles it. Of an effect with variants the most alike is shown.</p>
 {% endif %}
+{% if others %}<details><summary>{{ others|length }} more effects and variants</summary>
+{{ table(others) }}
+</details>{% endif %}
 {% for file in drafts %}<p>Draft effect: <code>{{ file }}</code>. Judge it by
 <code>tyrefem diagnose STUDY --effects {{ folder }}</code>, best with runs that were not fitted.</p>
 {% endfor %}
@@ -46,8 +51,20 @@ def law_block(d: DiagnosisData) -> Markup:
         return Markup("")
     template = Environment(autoescape=True).from_string(_TEMPLATE)
     drafts = [f"{EFFECTS}/{name}" for name in draft_effects(d)]
-    rows = [_row(d, row) for row in d.signatures[:SHOWN]]
-    return Markup(template.render(sentences=law_words(d), rows=rows, drafts=drafts, folder=EFFECTS))
+    first = leading_signatures(d.signatures)
+    rows = [_row(d, row) for row in first]
+    others = [_row(d, row) for row in d.signatures if row not in first]
+    return Markup(template.render(sentences=law_words(d), rows=rows, others=others, drafts=drafts, folder=EFFECTS))
+
+
+def leading_signatures(signatures: Sequence[LawSignature]) -> list[LawSignature]:
+    """The effects most alike, each by its best variant, and all mechanisms; most alike first."""
+    by_name: dict[str, LawSignature] = {}
+    for row in signatures:
+        if row.effect:
+            by_name.setdefault(row.name.split(" (")[0], row)
+    effects = list(by_name.values())[:SHOWN]
+    return [row for row in signatures if not row.effect or row in effects]
 
 
 def _row(d: DiagnosisData, row: LawSignature) -> dict[str, str]:
