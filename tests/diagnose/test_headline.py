@@ -307,6 +307,17 @@ def test_confounded_says_the_sets_in_words_and_what_would_decide(case: Case) -> 
     assert "the sun shines on the tyre" in wrong
     assert "hot-road 74 %, sun 25 %" in sure
     assert step.startswith("A thermocouple at s = 0 mm, outside")
+    # A colder road is told as that in a set, too.
+    d = confounded(case.diagnosis)
+    first, *others = d.judgement.ranking
+    assert first.fit is not None
+    (member,) = first.members
+    mean = first.fit.posterior.mean.copy()
+    mean[first.fit.unknowns.index(member.amplitudes[0])] *= -1
+    fit = replace(first.fit, posterior=replace(first.fit.posterior, mean=mean))
+    ranking = (replace(first, fit=fit), *others)
+    colder = replace(d, judgement=replace(d.judgement, ranking=ranking, credible=ranking[:3]))
+    assert "show which: the road is colder than stated (hot-road), or the sun" in headline(colder)[0]
     _, sure, _ = headline(doubted(case.diagnosis))
     assert sure.startswith("Sun predicts the held-out runs better than hot-road, by 45 nats (")
     wrong, sure, _ = headline(certain(case.diagnosis))

@@ -278,12 +278,13 @@ def _opened(sentence: str) -> str:
 
 
 def _set_words(entry: RankedSet) -> str:
-    """A set of effects in words: "the sun shines on the tyre (sun)"."""
+    """A set of effects in words, with the signs of its fit: "the road is colder than stated (hot-road)"."""
     if entry.outside or not entry.members:
         return "a cause outside the catalogue" if entry.outside else "no effect at all"
     sentences = []
     for member in entry.members:
-        sentence = member.effect.sentence.rstrip(".")
+        sentence = member.effect.sentence if entry.fit is None else effect_sentence(member, entry.fit)
+        sentence = sentence.rstrip(".")
         sentences.append(f"{sentence[0].lower()}{sentence[1:]} ({member.key})")
     return " and ".join(sentences)
 

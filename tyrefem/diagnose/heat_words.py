@@ -103,7 +103,7 @@ def _course(source: UnknownSource, kind: str, *, timed: bool = True) -> str:
         BEGINS: f"begins{switch}",
         ENDS: f"ends{switch}",
         GROWS: "grows evenly" + (f" from {source.time:.0f} ± {source.time_sd:.0f} s on" if switch else ""),
-        FREE: "changes over time as the picture shows",
+        FREE: "changes over time (picture missing-heat-course.png)",
     }[kind]
 
 
