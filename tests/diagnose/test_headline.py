@@ -322,7 +322,7 @@ def test_confounded_says_the_sets_in_words_and_what_would_decide(case: Case) -> 
     assert sure.startswith("Sun predicts the held-out runs better than hot-road, by 45 nats (")
     wrong, sure, _ = headline(certain(case.diagnosis))
     assert wrong.startswith("The road is warmer than stated")
-    assert "99.0 % probable" in sure
+    assert "with all readings 99.0 %" in sure
 
 
 def test_unexplained_says_where_heat_is_missing_and_which_sensor_to_check(case: Case) -> None:

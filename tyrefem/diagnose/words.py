@@ -229,7 +229,7 @@ def _confounded(d: DiagnosisData, closing: str) -> tuple[str, ...]:
     if d.best.at_bound:
         first += " Its best value lies beyond a physical bound, so it is not certain."
     further = [sentence for sentence in (or_outside_words(d), next_words(d)) if sentence]
-    return (first, *support_words(d), *d.judgement.doubts, *further, closing)
+    return (first, *d.judgement.doubts, *support_words(d), *further, closing)
 
 
 def missing_words(d: DiagnosisData) -> str:
