@@ -48,9 +48,15 @@ def problem_of(readings: np.ndarray) -> SelectionProblem:
     return SelectionProblem(made.residuals, made.predictions, (HOT,), SetPrior((HOT,), 0.5), LogEvidence())
 
 
+def of_effect(problem: SelectionProblem) -> float:
+    """ln evidence of the effect, with no heat."""
+    (fit,) = first_fits(problem.residuals, problem.predictions, [(HOT,)])
+    return fit.log_evidence
+
+
 def test_a_source_as_expected_explains_the_data_by_itself() -> None:
     problem = problem_of(law({PATCHES[1].key: 2.0, PATCHES[2].key: 1.5}))
-    heat = free_heat(problem, (HOT,), 0.0)
+    heat = free_heat(problem, 0.0, of_effect(problem))
     assert heat is not None
     assert heat.p_value > 0.01
     assert heat.lead < 3.0
@@ -59,7 +65,8 @@ def test_a_source_as_expected_explains_the_data_by_itself() -> None:
 
 def test_a_source_that_is_far_too_strong_is_no_explanation() -> None:
     # Twenty prior standard deviations.
-    heat = free_heat(problem_of(law({PATCHES[1].key: 20.0})), (HOT,), 0.0)
+    problem = problem_of(law({PATCHES[1].key: 20.0}))
+    heat = free_heat(problem, 0.0, of_effect(problem))
     assert heat is not None
     assert heat.p_value < 1e-4
     assert not heat.explains(DEFAULT.free_heat_lead)
@@ -67,7 +74,7 @@ def test_a_source_that_is_far_too_strong_is_no_explanation() -> None:
 
 def test_a_misfit_that_is_far_too_large_costs_no_further_fits() -> None:
     problem = problem_of(law({"hot": 80.0}))
-    heat = free_heat(problem, (HOT,), 0.0)
+    heat = free_heat(problem, 0.0, 0.0)
     assert heat is not None
     assert heat.p_value < 1e-10
     assert heat.lead == math.inf
@@ -77,7 +84,8 @@ def test_a_misfit_that_is_far_too_large_costs_no_further_fits() -> None:
 
 
 def test_heat_at_the_stations_is_no_effect_at_a_narrow_place() -> None:
-    heat = free_heat(problem_of(law({"hot": 30.0})), (HOT,), 0.0)
+    problem = problem_of(law({"hot": 30.0}))
+    heat = free_heat(problem, 0.0, of_effect(problem))
     assert heat is not None
     assert heat.lead > 2 * DEFAULT.free_heat_lead
     assert not heat.explains(DEFAULT.free_heat_lead)
@@ -86,7 +94,7 @@ def test_heat_at_the_stations_is_no_effect_at_a_narrow_place() -> None:
 def test_without_patches_nothing_is_compared() -> None:
     made = case(law, law({}), (HOT,))
     problem = SelectionProblem(made.residuals, made.predictions, (HOT,), SetPrior((HOT,), 0.5), LogEvidence())
-    assert free_heat(problem, (HOT,), 0.0) is None
+    assert free_heat(problem, 0.0, 0.0) is None
 
 
 @pytest.mark.parametrize(
@@ -111,6 +119,16 @@ def test_an_effect_is_not_named_where_heat_explains_the_data_as_well(heat: FreeH
     open_models = Robustness((replace(models[0], probability=0.6), replace(models[1], probability=0.4)))
     revision = beside_discrepancies(replace(judgement, verdict=CONFOUNDED), open_models, DEFAULT, heat=heat)
     assert revision.verdict == (PARTLY if named else CONFOUNDED)
+
+
+def test_the_best_set_with_the_effects_is_compared() -> None:
+    problem = problem_of(law({"hot": 30.0}))
+    fits = {members: first_fits(problem.residuals, problem.predictions, [members])[0] for members in ((), (HOT,))}
+    model = UnderDiscrepancy(ENERGY, 0.0, ENERGY, 1.0, {"hot": 1.0}, (HOT,), {}, fits)
+    assert model.log_evidence((HOT,)) == fits[(HOT,)].log_evidence
+    assert model.log_evidence(()) == max(fit.log_evidence for fit in fits.values())
+    assert replace(model, fits={(): fits[()]}).log_evidence((HOT,)) == -math.inf
+    assert replace(model, fits={(): fits[()]}, allowed=(HOT,)).log_evidence((HOT,)) == fits[()].log_evidence
 
 
 def problem_sets(problem: SelectionProblem) -> list[ScoredSet]:

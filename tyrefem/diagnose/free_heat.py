@@ -6,7 +6,6 @@ import math
 from dataclasses import dataclass
 
 from tyrefem.brief import Brief
-from tyrefem.diagnose.candidates import Members
 from tyrefem.diagnose.discrepancy import missing_heat_beside, missing_patches
 from tyrefem.diagnose.fits import continued, first_fits
 from tyrefem.diagnose.missing_heat import pursuit
@@ -18,25 +17,25 @@ USUAL_P = 0.01
 
 @dataclass(frozen=True)
 class FreeHeat(Brief):
-    """Sources of unknown origin, fitted with the full model.
+    """Sources of unknown origin without effects, fitted with the full model.
 
-    ``p_value``: probability of their misfit without effects. ``lead``: what the effects add to their ln evidence, nats;
-    infinite if the misfit is too large for a comparison.
+    ``p_value``: probability of their misfit. ``lead``: ln evidence by which the effects, beside the most probable of
+    all that else may be wrong, explain the data better, nats; infinite if the misfit is too large for a comparison.
     """
 
     p_value: float
     lead: float
 
     def _title(self) -> str:
-        return f"p = {self.p_value:.2g}, effects add {self.lead:.0f} nats"
+        return f"p = {self.p_value:.2g}, effects lead by {self.lead:.0f} nats"
 
     def explains(self, least_lead: float) -> bool:
-        """Whether noise explains what the heat leaves, and the effects add less than this, nats."""
+        """Whether noise explains what the heat leaves, and the effects lead by less than this, nats."""
         return self.p_value >= USUAL_P and self.lead < least_lead
 
 
-def free_heat(problem: SelectionProblem, members: Members, size: float) -> FreeHeat | None:
-    """Sources of unknown origin without the effects and beside them; None without patches of missing heat.
+def free_heat(problem: SelectionProblem, size: float, log_evidence: float) -> FreeHeat | None:
+    """Sources of unknown origin by themselves; None without patches of missing heat.
 
     Up to three patches (`pursuit`) are fitted with the full model, as a strong source is not linear. The others, and a
     part for each run, are linear. Their prior is that of a source as expected: one several times as strong is less
@@ -44,7 +43,8 @@ def free_heat(problem: SelectionProblem, members: Members, size: float) -> FreeH
 
     Parameters
     ----------
-    members : the effects. size : K, of errors of the readings that neighbours in time share, as beside the effects.
+    size : K, of errors of the readings that neighbours in time share, as beside the effects.
+    log_evidence : of the effects beside the most probable discrepancy model.
     """
     residuals, predictions = problem.residuals, problem.predictions
     patches = missing_patches(residuals)
@@ -59,5 +59,4 @@ def free_heat(problem: SelectionProblem, members: Members, size: float) -> FreeH
         return FreeHeat(first.p_value, math.inf)
     (alone,) = continued(here, predictions, [first], problem._count)
     alone = max(alone, first, key=lambda fit: fit.log_evidence)
-    (beside,) = first_fits(here, predictions, [members], {members: alone}, problem._count)
-    return FreeHeat(alone.p_value, beside.log_evidence - alone.log_evidence)
+    return FreeHeat(alone.p_value, log_evidence - alone.log_evidence)

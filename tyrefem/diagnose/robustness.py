@@ -71,6 +71,14 @@ class UnderDiscrepancy(Brief):
         without += [self.held_out_without[member.key] for member in members if member.key in self.held_out_without]
         return max(with_them, default=-math.inf), max(without, default=-math.inf)
 
+    def log_evidence(self, members: Members) -> float:
+        """Largest ln evidence of a fitted set with all these effects, if the model does not allow for them by itself.
+
+        -infinity if there is none.
+        """
+        wanted = {member for member in members if member not in self.allowed}
+        return max((fit.log_evidence for part, fit in self.fits.items() if wanted <= set(part)), default=-math.inf)
+
     @property
     def p_value(self) -> float:
         """Largest probability, among the fitted sets, of a misfit at least as large if set and model are right."""

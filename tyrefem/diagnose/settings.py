@@ -169,9 +169,9 @@ class DiagnosisSettings:
     gauge_sd: float = 0.07
     #: Sizes of missing heat as a discrepancy, over its prior sd; equally probable, so evidence is their average.
     heat_widths: tuple[float, ...] = (1.0, 3.0, 10.0)
-    #: An effect is not named beside a discrepancy if heat of unknown origin explains the data by itself and the effect
-    #: adds less to its ln evidence than this, nats. Sources at the stations miss places and layers by tens of nats.
-    free_heat_lead: float = 30.0
+    #: An effect is not named beside a discrepancy if heat of unknown origin explains the data by itself, and the effect
+    #: explains them better by less than this, nats. Sources at the stations miss places and layers by tens of nats.
+    free_heat_lead: float = 40.0
     #: Sizes of a correlated discrepancy of the readings that are tried, K; it is alike over this share of a run.
     discrepancy_sizes: tuple[float, ...] = (0.5, 1.0, 2.0, 4.0)
     discrepancy_time: float = 0.3

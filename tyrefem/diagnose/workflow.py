@@ -385,7 +385,8 @@ def rank(
     )
     revision, heat = beside_discrepancies(judgement, robust, settings, law_replaced=law_replaced), None
     if revision.members:
-        heat = free_heat(problem, problem.ordered(revision.members), robust.models[0].size)
+        leading = robust.models[0]
+        heat = free_heat(problem, leading.size, leading.log_evidence(revision.members))
         robust = replace(robust, heat=heat)
         revision = beside_discrepancies(judgement, robust, settings, law_replaced=law_replaced, heat=heat)
     if partly := revision.members:
