@@ -63,7 +63,7 @@ def test_a_road_hot_in_one_run_is_named_in_that_run(diagnosis: DiagnosisData) ->
     (amplitude,) = member.amplitudes
     assert diagnosis.best.values[amplitude] == pytest.approx(25.0, abs=4 * diagnosis.best.sd[amplitude])
     assert diagnosis.best.sd[amplitude] < 5.0
-    assert verdict_words(diagnosis)[0].startswith(f"In {ODD} only: The road is warmer than stated")
+    assert verdict_words(diagnosis)[0].startswith(f"In run {ODD} only: The road is warmer than stated")
     # The held-out run has the stated road, and the amended study keeps it.
     assert diagnosis.rms(after=True, held_out=True) < 1.2 * NOISE
     assert [look.verdict for look in diagnosis.looks] == ["identified", "no gap"]
@@ -84,7 +84,7 @@ def test_record_page_and_amended_study_state_the_run(diagnosis: DiagnosisData, t
     }  # fmt: skip
     assert all(row["runs"] is None for row in record["candidates"] if row["name"] == "sensor-offset")
     assert record["changes"][0]["runs"] == [ODD]
-    assert f"In {ODD} only: The road" in (tmp_path / "diagnosis.html").read_text(encoding="utf-8")
+    assert f"In run {ODD} only: The road" in (tmp_path / "diagnosis.html").read_text(encoding="utf-8")
     amended = tf.study(tmp_path / record["amended_study"])
     assert amended.data["effects"][0]["runs"] == [ODD]
     assert "run" not in amended.data
