@@ -28,6 +28,7 @@ from tyrefem.sweep.sobol_indices import Indices, indices
 from tyrefem.sweep.sweep import Sweep, sweep
 from tyrefem.sweep.tornado import Tornado, tornado_plan
 from tyrefem.variants.answers import TIME_TO, answer_names
+from tyrefem.variants.blocks import packed
 from tyrefem.variants.card import EnvelopeCard, LimitCard, OptimiseCard
 from tyrefem.variants.execution import Execution
 from tyrefem.variants.outcomes import Answered, Failed
@@ -297,7 +298,7 @@ def made(monkeypatch: pytest.MonkeyPatch) -> list[Optimist]:
     def by_model(_model: Any, _plan: Any, variants: list[dict[str, str]], _scheduler: Any) -> Any:
         for place, changes in enumerate(variants):
             low = sum(float(value.split()[0]) for value in changes.values()) - 0.5
-            yield {place: Answered({"hottest_degC": low, "gas_pressure_Pa": 0.0}, "reduced")}
+            yield packed({place: Answered({"hottest_degC": low, "gas_pressure_Pa": 0.0}, "reduced")})
 
     monkeypatch.setattr("tyrefem.reduced.surrogate.surrogate", surrogate)
     monkeypatch.setattr("tyrefem.sweep.evaluation.by_model", by_model)

@@ -8,10 +8,13 @@ from __future__ import annotations
 import base64
 import json
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from tyrefem.output import atomic_path, jsonable
 from tyrefem.output.folder import BOOKKEEPING
@@ -21,6 +24,7 @@ from tyrefem.reports import sweep_answer_figures as sweep_answer_figures
 from tyrefem.reports.explore_link import explore_link
 from tyrefem.reports.figures.style import png
 from tyrefem.reports.sweep_figures import figures
+from tyrefem.sweep.pareto import DEFAULT_AIMS
 from tyrefem.sweep.sweep import Sweep
 from tyrefem.variants.answer_units import difference_unit, name_of, shown
 
@@ -34,7 +38,7 @@ if TYPE_CHECKING:
 PAGE = "sweep.html"
 
 
-#: Largest number of rows of the page's tables; the files have all.
+#: Largest number of rows of the page's tables, and of failures; the files have all.
 ROWS, ROWS_OF_VARIANTS = 60, 500
 
 
@@ -103,16 +107,18 @@ def cell(value: Any, digits: int = 5) -> str:
 
 
 def _variants(design: DesignData, swept: Sweep) -> dict[str, Any]:
-    table, certificate = design.table, swept.certificate
+    whole, certificate = swept.overview(tuple(_aims(design))), swept.certificate
     errors = {} if certificate is None else dict(certificate.errors)
+    best = set(design.pareto["variant"]) if design.swept is not None and "hottest_degC" in whole else set()
+    if design.swept is None and design.optimum is not None and design.optimum.best is not None:
+        best = {swept.plan.names[design.optimum.best]}
+    places = chosen_rows(whole, best, [name for name in _aims(design) if name in whole])
+    table = swept.rows(swept.packed.numbers[places])
     wanted = dict.fromkeys((*design.card.answers, *design.card.limits, *COLUMNS))
     columns = [name for name in wanted if name in table]
     headings = [heading for heading in swept.plan.headings if heading in table]
-    best = set(design.pareto["variant"]) if design.swept is not None and "hottest_degC" in table else set()
-    if design.swept is None and design.optimum is not None and design.optimum.best is not None:
-        best = {swept.plan.names[design.optimum.best]}
     rows = []
-    for row in table.head(ROWS_OF_VARIANTS).to_dict("records"):
+    for row in table.to_dict("records"):
         cells = [row["variant"], *(cell(row[name]) for name in headings)]
         for name in columns:
             error = errors.get(name) if row["by"] == "reduced" else None
@@ -123,10 +129,33 @@ def _variants(design: DesignData, swept: Sweep) -> dict[str, Any]:
     return {
         "columns": ["variant", *headings, *columns, "by"],
         "rows": rows,
-        "total": len(table),
+        "total": len(whole),
         "certificate": certificate,
         "file": "sweep" if design.swept is not None else "optimum",
     }
+
+
+def _aims(design: DesignData) -> dict[str, None]:
+    """Answers whose extreme variants are of interest."""
+    return dict.fromkeys((*design.card.answers, *design.card.limits, *design.card.pareto, *DEFAULT_AIMS))
+
+
+def chosen_rows(table: pd.DataFrame, best: Collection[str], answers: Sequence[str]) -> NDArray[np.intp]:
+    """Places of the page's rows, increasing: all if they are few, else the best, then those with extreme answers.
+
+    At most `ROWS_OF_VARIANTS`, half of which for the best; of each answer as many with low as with high values.
+    """
+    if len(table) <= ROWS_OF_VARIANTS:
+        return np.arange(len(table), dtype=np.intp)
+    front = np.flatnonzero(table["variant"].isin(list(best)))
+    chosen = set(front[np.linspace(0, len(front) - 1, min(len(front), ROWS_OF_VARIANTS // 2)).astype(int)].tolist())
+    each = (ROWS_OF_VARIANTS - len(chosen)) // (2 * max(len(answers), 1))
+    for answer in answers:
+        values = table[answer].to_numpy(dtype=float)
+        known = np.flatnonzero(~np.isnan(values))
+        order = known[np.argsort(values[known], kind="stable")]
+        chosen |= {*order[:each].tolist(), *order[max(len(order) - each, 0) :].tolist()}
+    return np.array(sorted(chosen), dtype=np.intp)
 
 
 def _numbers(design: DesignData) -> list[dict[str, str]]:
@@ -140,7 +169,7 @@ def _numbers(design: DesignData) -> list[dict[str, str]]:
     if design.swept is not None and design.swept.outcomes:
         from tyrefem.sweep.responses import extreme, finished, judged
 
-        table = finished(design.swept)
+        table = finished(design.swept, design.card.answers)
         for answer in judged(design.swept, design.card.answers)[:3]:
             low, high = (float(extreme(table, answer, least=least)[answer]) for least in (True, False))
             certificate = design.swept.certificate

@@ -36,6 +36,8 @@ if TYPE_CHECKING:
 BROKEN = "#D55E00"
 #: Largest number of lines of one picture; more are drawn as points with their mean.
 MOST_LINES = 8
+#: More variants than this are drawn as hexagons, so that a picture stays small; number of hexagons along an axis.
+MOST_POINTS, HEXAGONS = 3000, 40
 #: Largest numbers of maps and of curves of an answer.
 MOST_MAPS, MOST_CURVES = 3, 4
 
@@ -78,7 +80,7 @@ def _responses(answer: Responses) -> Iterator[tuple[str, str, Figure]]:
 @figures.register(ParetoFront)
 def _pareto(answer: ParetoFront) -> Iterator[tuple[str, str, Figure]]:
     """The front in every pair of objectives."""
-    aims = [name for name in answer.chosen if name in answer.swept.table]
+    aims = [name for name in answer.chosen if name in answer.swept.overview(tuple(answer.chosen))]
     for y, x in itertools.combinations(aims, 2):
         if len(answer.table):
             caption = f"{name_of(y)} against {name_of(x)}; the front considers all objectives"
@@ -104,12 +106,12 @@ def axis(heading: str) -> str:
 
 def curves(sweep: Sweep, x: str, answer: str) -> Figure:
     """Draw an answer over one number: a line per combination of the others if these are few, else points and means."""
-    table = finished(sweep)
+    table = finished(sweep, [answer])
     others = [
         varied.heading for varied in sweep.plan.varied if varied.heading != x and table[varied.heading].nunique() > 1
     ]
-    groups = list(table.groupby(others, sort=False)) if others else [((), table)]
-    lines = len(groups) <= MOST_LINES and all(len(group) > 1 for _, group in groups)
+    groups = _groups(table, others)
+    lines = 0 < len(groups) <= MOST_LINES and all(len(group) > 1 for _, group in groups)
     beside = lines and bool(others)
     drawn = figure(8.9 if beside else 6.6, 4.2 + TITLE)
     axes = add_axes(drawn, 0.95, 0.62, 5.1, 3.4)
@@ -135,10 +137,31 @@ def curves(sweep: Sweep, x: str, answer: str) -> Figure:
     return drawn
 
 
+def _groups(table: pd.DataFrame, others: list[str]) -> list[tuple[Any, pd.DataFrame]]:
+    """The rows with the same other numbers; none if these are too many for lines."""
+    if not others:
+        return [((), table)]
+    if any(table[other].nunique() > MOST_LINES for other in others):
+        return []
+    grouped = table.groupby(others, sort=False)
+    return list(grouped) if grouped.ngroups <= MOST_LINES else []
+
+
+def _cloud(axes: Any, x: Any, y: Any) -> None:
+    """Draw many variants as hexagons, darker where there are more."""
+    axes.hexbin(x, y, gridsize=HEXAGONS, mincnt=1, bins="log", cmap="Greys", linewidths=0.2, vmin=0.3)
+
+
 def _points(axes: Any, table: pd.DataFrame, x: str, answer: str) -> None:
     """Draw every variant, and the mean at each value (in ten classes if there are many values)."""
-    axes.plot(table[x], table[answer], "o", ms=3, alpha=0.45, mew=0, color=PALETTE[0], label="variants")
     numbers = table[x]
+    if len(table) > MOST_POINTS and numbers.dtype.kind in "if":
+        known = table.dropna(subset=[answer])
+        _cloud(axes, known[x], known[answer])
+    elif len(table) > MOST_POINTS:
+        _ranges(axes, table, x, answer)
+    else:
+        axes.plot(numbers, table[answer], "o", ms=3, alpha=0.45, mew=0, color=PALETTE[0], label="variants")
     if numbers.dtype.kind in "if" and numbers.nunique() > 12:
         values = numbers.to_numpy(dtype=float)
         classes = np.minimum((10 * (values - values.min()) / np.ptp(values)).astype(int), 9)
@@ -151,25 +174,37 @@ def _points(axes: Any, table: pd.DataFrame, x: str, answer: str) -> None:
     axes.legend(fontsize=FONT - 1, frameon=False)
 
 
+def _ranges(axes: Any, table: pd.DataFrame, x: str, answer: str) -> None:
+    """Draw the range of an answer at every value, for values without an order."""
+    ends = table.groupby(x)[answer].agg(["min", "max"])
+    axes.vlines(ends.index, ends["min"], ends["max"], lw=5, color=PALETTE[0], alpha=0.45, label="all variants")
+
+
 def response_map(sweep: Sweep, x: str, y: str, answer: str) -> Figure:
     """Draw an answer over two numbers, mean over the others: contours for a grid, else coloured points."""
-    table = finished(sweep)
+    table = finished(sweep, [answer])
     drawn = figure(6.9, 4.6 + TITLE)
     axes = add_axes(drawn, 0.95, 0.62, 4.5, 3.8)
     bar = add_axes(drawn, 5.65, 0.62, 0.16, 3.8)
     colours = temperature_map() if answer.endswith("_degC") else ENERGY_MAP
-    grid = table.pivot_table(index=y, columns=x, values=answer, aggfunc="mean")
-    regular = bool(grid.notna().to_numpy().all()) and min(grid.shape) > 1
-    if regular:
+    grid = _regular(table, x, y, answer)
+    regular = grid is not None
+    many = len(table) > MOST_POINTS
+    if grid is not None:
         shown: Any = axes.contourf(grid.columns, grid.index, grid.to_numpy(), levels=16, cmap=colours)
         axes.contour(grid.columns, grid.index, grid.to_numpy(), levels=16, colors="white", linewidths=0.35, alpha=0.7)
         _boundary(axes, sweep, grid, answer)
         axes.margins(0)
+    elif many:
+        known = table.dropna(subset=[answer])
+        shown = axes.hexbin(known[x], known[y], C=known[answer], gridsize=HEXAGONS, linewidths=0.2, cmap=colours)
     else:
         shown = axes.scatter(table[x], table[y], c=table[answer], s=16, cmap=colours)
-        outside = table[~table["feasible"]]
-        if sweep.plan.limits and len(outside):
-            axes.plot(outside[x], outside[y], "x", ms=4, color=QUIET, label="outside a limit")
+    if not regular and sweep.plan.limits:
+        outside = _mostly_outside(axes, table, x, y) if many else table.loc[~table["feasible"], [x, y]].to_numpy()
+        if len(outside):
+            words = "most are outside a limit" if many else "outside a limit"
+            axes.plot(*outside.T, "x", ms=4, color=QUIET, label=words)
             axes.legend(fontsize=FONT - 1, frameon=True, loc="lower left", bbox_to_anchor=(0.0, 1.0))
     colorbar = drawn.colorbar(shown, cax=bar)
     colorbar.set_label(label(answer), fontsize=FONT)
@@ -184,9 +219,25 @@ def response_map(sweep: Sweep, x: str, y: str, answer: str) -> Figure:
     title(
         drawn,
         name_of(answer).capitalize(),
-        sweep.plan.study.name + ("" if fixed else ", mean over the other numbers" if regular else ""),
+        sweep.plan.study.name + ("" if fixed else ", mean over the other numbers" if regular or many else ""),
     )
     return drawn
+
+
+def _mostly_outside(axes: Any, table: pd.DataFrame, x: str, y: str) -> Any:
+    """Centres of the hexagons in which most variants are outside a limit, (n, 2)."""
+    inside = table["feasible"].astype(float)
+    drawn = axes.hexbin(table[x], table[y], C=inside, gridsize=HEXAGONS, visible=False)
+    return drawn.get_offsets()[drawn.get_array() < 0.5]
+
+
+def _regular(table: pd.DataFrame, x: str, y: str, answer: str) -> pd.DataFrame | None:
+    """The mean answer at every pair of values of a grid; None: no grid."""
+    count = table[x].nunique() * table[y].nunique()
+    if min(table[x].nunique(), table[y].nunique()) < 2 or count > len(table):
+        return None
+    grid = table.pivot_table(index=y, columns=x, values=answer, aggfunc="mean")
+    return grid if min(grid.shape) > 1 and bool(grid.notna().to_numpy().all()) else None
 
 
 def _boundary(axes: Any, sweep: Sweep, grid: pd.DataFrame, answer: str) -> None:
@@ -202,13 +253,18 @@ def _boundary(axes: Any, sweep: Sweep, grid: pd.DataFrame, answer: str) -> None:
 
 def pareto(sweep: Sweep, best: pd.DataFrame, x: str, y: str) -> Figure:
     """Draw all variants in two answers; filled markers are on the front."""
-    table = finished(sweep)
+    table = finished(sweep, [x, y])
     drawn = figure(6.9, 4.4 + TITLE)
     axes = add_axes(drawn, 1.0, 0.62, 5.5, 3.5)
     feasible = table[table["feasible"]]
     rest = table[~table["feasible"]]
-    axes.plot(feasible[x], feasible[y], "o", ms=3.5, mfc="none", mec=QUIET, label="variants")
-    if len(rest):
+    many = len(table) > MOST_POINTS
+    if many:
+        known = table.dropna(subset=[x, y])
+        _cloud(axes, known[x], known[y])
+    else:
+        axes.plot(feasible[x], feasible[y], "o", ms=3.5, mfc="none", mec=QUIET, label="variants")
+    if len(rest) and not many:
         axes.plot(rest[x], rest[y], "x", ms=3.5, color="#b0b0b0", label="outside a limit")
     # A temperature that was never reached has no time.
     ordered = best.dropna(subset=[x, y]).sort_values(x)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import importlib.metadata
+from collections.abc import Iterator
+from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,7 +14,8 @@ from tyrefem.reports.sweep import FILES as LIST
 from tyrefem.reports.sweep import clear, earlier, write_page
 from tyrefem.reports.sweep_variants import FOLDER as VARIANT_FILES
 from tyrefem.sweep.question import sweep_questions
-from tyrefem.sweep.sweep import Sweep
+from tyrefem.sweep.responses import Responses
+from tyrefem.sweep.sweep import ROWS_AT_ONCE, Sweep
 from tyrefem.variants.store import NAME as VARIANTS
 
 if TYPE_CHECKING:
@@ -54,7 +57,10 @@ def save(design: DesignData, folder: Path, *, pictures: bool = True) -> dict[str
     """
     before, written = earlier(folder), []
     for part in design.parts:
-        written += write_table(part.table, folder, part.name)
+        if isinstance(part, Responses) and len(part.swept.outcomes) > ROWS_AT_ONCE:
+            written += write_parts(part.swept.parts(), folder, part.name)
+        else:
+            written += write_table(part.table, folder, part.name)
     if design.swept is not None and design.swept.certificate is not None:
         written += write_errors(design.swept, folder)
     summary = summarised(design)
@@ -72,6 +78,36 @@ def write_table(table: pd.DataFrame, folder: Path, name: str) -> list[str]:
     with atomic_path(folder / f"{name}.parquet") as temporary:
         table.to_parquet(temporary, index=False)
     return [f"{name}.csv", f"{name}.parquet"]
+
+
+def write_parts(parts: Iterator[pd.DataFrame], folder: Path, name: str) -> list[str]:
+    """As `write_table`, for the parts of a long table one after the other; the Parquet file has a row group for each."""
+    import pyarrow
+    from pyarrow import parquet
+
+    with (
+        atomic_path(folder / f"{name}.csv") as text,
+        atomic_path(folder / f"{name}.parquet") as binary,
+        open(text, "w", encoding="utf-8", newline="") as lines,
+        ExitStack() as opened,
+    ):
+        writer = schema = None
+        for part in parts:
+            part.to_csv(lines, index=False, float_format="%.9g", header=schema is None)
+            content = pyarrow.Table.from_pandas(part, schema=schema, preserve_index=False)
+            if writer is None:
+                schema = _without_nulls(content.schema)
+                writer = opened.enter_context(parquet.ParquetWriter(binary, schema))
+            writer.write_table(content.cast(schema))
+    return [f"{name}.csv", f"{name}.parquet"]
+
+
+def _without_nulls(schema: Any) -> Any:
+    """The schema of a table whose first part has columns without any value: they are texts."""
+    import pyarrow
+
+    fields = [field.with_type(pyarrow.string()) if pyarrow.types.is_null(field.type) else field for field in schema]
+    return pyarrow.schema(fields, metadata=schema.metadata)
 
 
 def write_errors(sweep: Sweep, folder: Path) -> list[str]:
@@ -107,8 +143,11 @@ def summarised(design: DesignData) -> dict[str, Any]:
 
 
 def _variants(design: DesignData) -> list[dict[str, Any]]:
-    """The changes of all variants."""
-    return [] if design.swept is None else [dict(variant) for variant in design.swept.plan.variants]
+    """Changes of variants with every value that is listed, and both ends of every range."""
+    if design.swept is None:
+        return []
+    plan = design.swept.plan
+    return [number.changes(value) for number in plan.varied for value in number.ends] or list(map(dict, plan.variants))
 
 
 def sample_summary(sweep: Sweep) -> dict[str, Any]:
@@ -118,9 +157,9 @@ def sample_summary(sweep: Sweep) -> dict[str, Any]:
         **sweep.plan.sampling,
         "variants": len(sweep.plan.variants),
         "finished": {
-            "full": len(sweep.answered) - sweep.reduced,
+            "full": len(sweep.outcomes) - len(sweep.failed) - sweep.reduced,
             "reduced": sweep.reduced,
-            "failed": len(sweep.outcomes) - len(sweep.answered),
+            "failed": len(sweep.failed),
         },
         "reduced_model": None
         if certificate is None

@@ -112,6 +112,8 @@ class DesignData(Brief):
         """The variants on the Pareto front, see `tyrefem.sweep.pareto.front`."""
         from tyrefem.sweep.pareto import front
 
+        if self.swept is not None and self.swept.outcomes:
+            return ParetoFront(self.swept, dict(self.card.pareto)).table
         return front(self.table, dict(self.card.pareto))
 
     @property

@@ -8,18 +8,25 @@ from __future__ import annotations
 import dataclasses
 import hashlib
 import json
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any, Self
 
+import numpy as np
+
 from tyrefem.estimates import work as estimate
 from tyrefem.simulation.estimate import RunEstimate
 from tyrefem.variants.execution import Execution
-from tyrefem.variants.outcomes import Failed, NotReducible, Outcome, outcome_of
+from tyrefem.sweep.reduced_tasks import by_model
+from tyrefem.variants.blocks import Numbers, PackedOutcomes
+from tyrefem.variants.outcome_table import OutcomeTable
+from tyrefem.variants.outcomes import Failed, Outcome
 from tyrefem.variants.plan import Plan
 from tyrefem.variants.schedulers import Here, Local
-from tyrefem.variants.store import Name, Store
+from tyrefem.variants.store import Store
 from tyrefem.variants.task import Task, perform, perform_all
+from tyrefem.variants.task_list import TaskList
 
 if TYPE_CHECKING:
     from tyrefem.reduced.surrogate import Surrogate, SurrogateCertificate
@@ -40,7 +47,7 @@ class VariantEvaluation:
     plan : the study, its varied numbers (the box of a reduced model), and ``time_to``.
     execution : see `Execution`. variants : number -> changes. digest : identifies what the folder's outcomes belong to.
 
-    ``outcomes``: number -> `Answered` or `Failed`.
+    ``outcomes``: number -> `Answered` or `Failed`; packed, and beyond some size only in the folder.
     ``certificate``: of the reduced model. ``reduced``: is it used? ``why_full``: reason if it is not.
     ``resumed``: number of outcomes that the folder had.
     """
@@ -50,7 +57,7 @@ class VariantEvaluation:
 
     def __init__(self, plan: Plan, execution: Execution, variants: Sequence[Mapping[str, Any]], digest: str) -> None:
         self.plan, self.execution, self.variants = plan, execution, variants
-        self.outcomes: dict[int, Outcome] = {}
+        self.outcomes = OutcomeTable()
         self.certificate: SurrogateCertificate | None = None
         self.why_full = ""
         self.resumed = 0
@@ -72,21 +79,16 @@ class VariantEvaluation:
             )
             self.resumed = self._store.open(restart=self.execution.restart)
             self.certificate = _certificate(self._store.notes.get(CERTIFICATE))
+            self._take_up(self._store)
         return self
 
     def __exit__(self, *_: object) -> None:
         if self._store is not None:
             self._store.close()
 
-    def name(self, number: int) -> Name:
-        """Key of a variant in the folder."""
-        return number
-
-    def resume(self, number: int) -> None:
-        """Take a variant's outcome from the folder, if it is there."""
-        known = None if self._store is None else self._store.done.get(self.name(number))
-        if known is not None:
-            self.outcomes[number] = outcome_of(known)
+    def _take_up(self, store: Store) -> None:
+        """Take the outcomes of the folder: the store holds them for both."""
+        self.outcomes = store.outcomes
 
     def train(self, expected: int) -> None:
         """Train a reduced model if it is allowed, worth its cost, and certified within the tolerance.
@@ -157,58 +159,44 @@ class VariantEvaluation:
 
     def evaluate(self, numbers: Sequence[int], *, full: bool = False) -> Iterator[int]:
         """Evaluate variants; yields the number of finished variants after every task. ``full``: by full runs only."""
-        if self.reduced and self._model is None and not full and numbers:
+        if self.reduced and self._model is None and not full and len(numbers):
             self._train_model()
-        if self._model is not None and not full and numbers:
-            variants = [self.variants[n] for n in numbers]
-            for by_place in by_model(self._model, self.plan, variants, self.execution):
-                yield self._keep({numbers[place]: outcome for place, outcome in by_place.items()})
-        yield from self._run_in_full([n for n in numbers if n not in self.outcomes], self.execution.settings.piece)
+        wanted = np.asarray(numbers, dtype=np.intp)
+        if self._model is not None and not full and len(wanted):
+            chosen = TaskList(len(wanted), lambda place: self.variants[int(wanted[place])])
+            for outcomes in by_model(self._model, self.plan, chosen, self.execution):
+                yield self._keep(outcomes.numbered(wanted))
+        yield from self._run_in_full(self.outcomes.without(wanted), self.execution.settings.piece)
 
-    def _run_in_full(self, left: Sequence[int], most: int) -> Iterator[int]:
+    def _run_in_full(self, left: Numbers, most: int) -> Iterator[int]:
         """Run variants in full, several in a task if they are many, to limit the scheduler's load."""
         where, size = self.execution.where, min(max(len(left) // self.execution.settings.single, 1), most)
         if size == 1:
-            for place, outcome in where.outcomes(perform, [self._task(n) for n in left]):
-                yield self._keep({left[place]: outcome})
+            for place, outcome in where.outcomes(perform, TaskList(len(left), lambda n: self._task(left[n]))):
+                yield self._keep({int(left[place]): outcome})
             return
-        pieces = [left[first : first + size] for first in range(0, len(left), size)]
+        pieces = TaskList(math.ceil(len(left) / size), lambda place: left[place * size : (place + 1) * size].tolist())
+        tasks = TaskList(len(pieces), lambda place: [self._task(n) for n in pieces[place]])
         lost: list[int] = []
-        for place, outcomes in where.outcomes(perform_all, [[self._task(n) for n in piece] for piece in pieces]):
+        for place, outcomes in where.outcomes(perform_all, tasks):
             if isinstance(outcomes, Failed):
                 lost += pieces[place]
             else:
                 yield self._keep(dict(zip(pieces[place], outcomes, strict=True)))
         if lost:
             # A variant ended its worker: run the variants of this task separately.
-            yield from self._run_in_full(lost, 1)
+            yield from self._run_in_full(np.array(lost, dtype=np.intp), 1)
 
     def _task(self, number: int) -> Task:
-        return Task(number, self.plan.packed, self.variants[number], self.plan.time_to)
+        return Task(int(number), self.plan.packed, self.variants[int(number)], self.plan.time_to)
 
-    def _keep(self, outcomes: Mapping[int, Outcome]) -> int:
-        """Store outcomes in memory and in the folder; returns the number of finished variants."""
-        self.outcomes.update(outcomes)
+    def _keep(self, outcomes: Mapping[int, Outcome] | PackedOutcomes) -> int:
+        """Store outcomes in the folder, if there is one, and in memory; returns the number of finished variants."""
         if self._store is not None:
-            self._store.add({self.name(n): outcome.entry for n, outcome in outcomes.items()})
+            self._store.add(outcomes)
+        else:
+            self.outcomes.update(outcomes)
         return len(self.outcomes)
-
-
-def by_model(
-    trained: Surrogate, plan: Plan, variants: Sequence[Mapping[str, Any]], execution: Execution
-) -> Iterator[dict[int, Outcome]]:
-    """Outcomes of variants by place, as tasks finish; variants that are `NotReducible` are left to full runs."""
-    from tyrefem.reduced.training_rounds import ReducedTask, perform_reduced
-
-    packed, piece = trained.packed(plan.packed), execution.settings.piece
-    firsts = range(0, len(variants), piece)
-    tasks = [ReducedTask(list(variants[first : first + piece]), plan.time_to) for first in firsts]
-    for number, outcomes in execution.where.outcomes(perform_reduced, tasks, packed):
-        if isinstance(outcomes, Failed):
-            yield {}
-            continue
-        numbered = enumerate(outcomes, firsts[number])
-        yield {place: outcome for place, outcome in numbered if not isinstance(outcome, NotReducible)}
 
 
 def _certificate(noted: Mapping[str, Any] | None) -> SurrogateCertificate | None:
@@ -240,9 +228,17 @@ class Evaluator(VariantEvaluation):
         self._number: dict[str, int] = {}
         self._names: list[str] = []
 
-    def name(self, number: int) -> str:
-        """Key of a variant in the folder: its changes, and "full" if a full run replaces the reduced model."""
-        return self._names[number]
+    def _take_up(self, store: Store) -> None:
+        """Outcomes are taken from the folder when the search asks for their variants."""
+
+    def _keep(self, outcomes: Mapping[int, Outcome] | PackedOutcomes) -> int:
+        """Store outcomes by name: the changes, and "full" if a full run replaces the reduced model."""
+        before = self.outcomes.numbers
+        self.outcomes.update(outcomes)
+        if self._store is not None:
+            new = np.setdiff1d(self.outcomes.numbers, before).tolist()
+            self._store.add_by_name({self._names[n]: self.outcomes[n] for n in new})
+        return len(self.outcomes)
 
     def __call__(self, variants: Sequence[Mapping[str, Any]], *, full: bool = False) -> list[Outcome]:
         """Outcomes of variants, in their order; ``full``: by full runs only."""
@@ -258,7 +254,9 @@ class Evaluator(VariantEvaluation):
             number = self._number[name] = len(self.variants)
             self.variants.append(dict(changes))
             self._names.append(name)
-            self.resume(number)
+            known = None if self._store is None else self._store.by_name.get(name)
+            if known is not None:
+                self.outcomes.update({number: known})
         return self._number[name]
 
     @property

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import heapq
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -19,7 +20,7 @@ from tyrefem.variants.card import LimitCard, OptimiseCard
 from tyrefem.variants.execution import Execution, ExecutionOptions
 from tyrefem.variants.outcomes import Answered, Failed, Outcome
 from tyrefem.variants.plan import Plan
-from tyrefem.variants.samples import grid
+from tyrefem.variants.samples import Grid
 from tyrefem.variants.varied import Varied
 
 if TYPE_CHECKING:
@@ -49,10 +50,10 @@ def best_known(known: Sweep | None, card: OptimiseCard) -> list[Array]:
     if known is None:
         return []
     plan = known.plan
-    feasible = [n for n, outcome in known.answered.items() if violation(outcome, plan.limits) == 0]
-    order = sorted(feasible, key=lambda n: (objective(known.outcomes[n], card), n))
+    feasible = ((objective(each, card), n) for n, each in known.answered if violation(each, plan.limits) == 0)
     return [
-        np.array([_place(number, plan.variants[n][number.key]) for number in plan.varied]) for n in order[:MOST_KNOWN]
+        np.array([_place(number, plan.variants[n][number.key]) for number in plan.varied])
+        for _, n in heapq.nsmallest(MOST_KNOWN, feasible)
     ]
 
 
@@ -212,7 +213,7 @@ class Optimum:
         heading = (
             f"{'Smallest' if self.card.minimise else 'Largest'} {name_of(self.answer)}{limits and f' with {limits}'}"
         )
-        failed = len(self.swept.outcomes) - len(self.swept.answered)
+        failed = len(self.swept.failed)
         tried = f"{len(self.swept.outcomes)} different variants evaluated" + (f", {failed} failed" if failed else "")
         if self.best is None:
             return [f"{heading}: no variant keeps the limits ({tried})."]
@@ -285,7 +286,7 @@ def optimum(
             and math.prod(len(number.values) for number in plan.varied) <= card.runs
         )
         if exhaustive:
-            evaluate(grid(plan.varied))
+            evaluate(Grid(plan.varied))
             ended = ""
         else:
             ended = evolve(evaluate, card, execution.report_progress, best_known(known, card))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -82,12 +83,14 @@ class ParetoFront:
     @property
     def chosen(self) -> dict[str, str]:
         """Answer -> aim."""
-        return dict(self.aims) or default_aims(self.swept.table)
+        return dict(self.aims) or default_aims(self.swept.overview())
 
-    @property
+    @functools.cached_property
     def table(self) -> pd.DataFrame:
         """The variants on the front, sorted by the first aim."""
-        return front(self.swept.table, self.chosen)
+        best, numbers = front(self.swept.overview(tuple(self.chosen)), self.chosen), self.swept.packed.numbers
+        whole = self.swept.rows(np.sort(numbers[best.index]))
+        return whole.set_index("variant", drop=False).loc[best["variant"]].set_index(best.index)
 
     @property
     def words(self) -> list[str]:
@@ -98,7 +101,7 @@ class ParetoFront:
         table, aims = self.table, self.chosen
         if len(aims) < 2 or table.empty:
             return []
-        feasible = int(self.swept.table["feasible"].sum())
+        feasible = int(self.swept.overview()["feasible"].sum())
         together = ", ".join(("" if aim == "min" else "large ") + name_of(name) for name, aim in aims.items())
         sentences = [f"{len(table)} of {feasible} variants are not dominated in {together}."]
         best: dict[str, tuple[Mapping[str, Any], list[str]]] = {}

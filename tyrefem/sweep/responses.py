@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -23,19 +23,20 @@ MOST_LEVELS = 12
 
 def judged(sweep: Sweep, wanted: tuple[str, ...] = ()) -> list[str]:
     """Answers in pictures and tables: those wanted, else the default ones, if they vary."""
-    table = finished(sweep)
+    table = finished(sweep, wanted)
     names = wanted or (*DEFAULT_ANSWERS, *([TIME_TO] if sweep.plan.time_to is not None else []))
     return [name for name in names if name in table and table[name].nunique() > 1]
 
 
-def finished(sweep: Sweep) -> pd.DataFrame:
-    """The rows that have answers."""
-    return sweep.table[sweep.table["failure"] == ""]
+def finished(sweep: Sweep, wanted: Sequence[str] = ()) -> pd.DataFrame:
+    """The rows that have answers, with the usual answers and those wanted; see `Sweep.overview`."""
+    table = sweep.overview(wanted)
+    return table[table["failure"] == ""]
 
 
 def numeric(sweep: Sweep) -> list[str]:
     """Headings of the varied numbers that can be an axis."""
-    table = sweep.table
+    table = sweep.overview()
     return [
         varied.heading
         for varied in sweep.plan.varied
@@ -52,7 +53,7 @@ def main_effects(sweep: Sweep, answer: str) -> pd.DataFrame:
     """
     import pandas as pd
 
-    table, rows = finished(sweep).dropna(subset=[answer]), []
+    table, rows = finished(sweep, [answer]).dropna(subset=[answer]), []
     lines = [name for name in numeric(sweep) if table[name].nunique() > MOST_LEVELS]
     slopes = _slopes(table, lines, answer)
     for varied in sweep.plan.varied:
@@ -86,7 +87,7 @@ def _slopes(table: pd.DataFrame, names: list[str], answer: str) -> dict[str, flo
 def words(sweep: Sweep, wanted: tuple[str, ...] = ()) -> list[str]:
     """Sentences: range of every reported answer, with its variants, and the main effects."""
     sentences = []
-    table = finished(sweep)
+    table = finished(sweep, wanted)
     keeping = int(table["feasible"].sum())
     if sweep.plan.limits and len(table):
         sentences.append(f"{keeping or 'None'} of {len(table)} variants keep{'' if keeping else 's'} the limits.")

@@ -11,7 +11,6 @@ import numpy as np
 from tyrefem.errors import InputError
 from tyrefem.sweep.sweep import Sweep
 from tyrefem.variants.answer_units import name_of
-from tyrefem.variants.outcomes import answer_of
 from tyrefem.variants.samples import problem
 
 if TYPE_CHECKING:
@@ -37,11 +36,12 @@ def indices(swept: Sweep, answer: str) -> pd.DataFrame:
     plan = swept.plan
     if plan.sampling.get("sample") != "saltelli":
         raise InputError("Sobol indices need sample = 'saltelli'", field="sample")
-    values = [answer_of(swept.outcomes.get(n), answer) for n in range(len(plan.variants))]
-    missing = sum(value is None or value != value for value in values)
+    numbers = swept.packed.numbers
+    y = np.full(len(plan.variants), np.nan)
+    y[numbers] = swept.packed.columns(numbers, [answer]).answers[answer].astype(float)
+    missing = int(np.isnan(y).sum())
     if missing:
-        raise InputError(f"{missing} of {len(values)} variants have no '{answer}'; Sobol indices need them all")
-    y = np.array(values, dtype=float)
+        raise InputError(f"{missing} of {len(y)} variants have no '{answer}'; Sobol indices need them all")
     names = [varied.label for varied in plan.varied]
     if np.ptp(y) == 0:
         nothing = np.zeros(len(names))

@@ -3,25 +3,36 @@
 from __future__ import annotations
 
 import functools
+import math
 import time
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
+from tyrefem.cache import Cache
 from tyrefem.errors import InputError, nearest
 from tyrefem.sweep.evaluation import VariantEvaluation
 from tyrefem.variants.dask_cluster import ClusterLostError
 from tyrefem.variants.execution import Execution, ExecutionOptions
-from tyrefem.variants.outcomes import Answered, Failed, Outcome
+from tyrefem.variants.answers import TIME_TO
+from tyrefem.variants.blocks import Numbers
+from tyrefem.variants.outcome_table import OutcomeColumns, OutcomeTable
+from tyrefem.variants.outcomes import Answered, Outcome
 from tyrefem.variants.plan import Plan
 
 if TYPE_CHECKING:
     import pandas as pd
 
     from tyrefem.reduced.surrogate import SurrogateCertificate
+
+#: Rows of a table that are made at once.
+ROWS_AT_ONCE = 8192
+#: Answers that sentences and pictures use by default.
+USUAL = ("hottest_degC", "rolling_resistance_coefficient", "mass_kg", TIME_TO)
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,34 +70,82 @@ class Sweep(Brief):
         }
 
     @functools.cached_property
+    def packed(self) -> OutcomeTable:
+        """The outcomes, packed."""
+        return self.outcomes if isinstance(self.outcomes, OutcomeTable) else OutcomeTable(self.outcomes)
+
+    @functools.cached_property
     def table(self) -> pd.DataFrame:
         """A row per finished variant: its values and answers, ``by``, ``error_K``, ``feasible``, ``failure``.
 
         ``error_K`` is the estimated error of a variant's temperatures, 0 for a full run. ``failure`` is empty
         without a failure.
         """
+        return self.rows(self.packed.numbers)
+
+    def overview(self, answers: Sequence[str] = ()) -> pd.DataFrame:
+        """`table` with some answers only: `USUAL`, those with limits, and ``answers`` as far as there are any."""
+        wanted = tuple(dict.fromkeys((*USUAL, *self.plan.limits, *answers)))
+        return self._overviews.get(wanted, lambda: self._joined(self.packed.numbers, wanted))
+
+    @functools.cached_property
+    def _overviews(self) -> Cache[pd.DataFrame]:
+        return Cache(2)
+
+    def rows(self, numbers: Numbers) -> pd.DataFrame:
+        """The rows of `table` of some finished variants, by their increasing numbers."""
+        return self._joined(numbers, self.answers)
+
+    def parts(self, rows: int = ROWS_AT_ONCE) -> Iterator[pd.DataFrame]:
+        """`table` in parts of so many rows, without all rows in memory; every part has the types of the whole table."""
+        numbers, texts = self.packed.numbers, self.packed.other_than_floats
+        settings = self.overview().dtypes
+        for first in range(0, len(numbers), rows):
+            part = self._part(numbers[first : first + rows], self.answers)
+            types = {name: settings[name] for name in self.plan.headings if name in settings}
+            types |= {name: np.dtype(object if name in texts else float) for name in self.answers}
+            yield self._judged(part.astype({name: kind for name, kind in types.items() if name in part}))
+
+    def _joined(self, numbers: Numbers, answers: Sequence[str]) -> pd.DataFrame:
+        """The rows of some variants with some answers, part by part, so that few are in memory as objects."""
         import pandas as pd
 
-        rows = [self._row(number) for number in sorted(self.outcomes)]
-        table = pd.DataFrame(rows)
-        if table.empty:
+        if not len(numbers):
             return pd.DataFrame(columns=["variant", *self.plan.headings, "feasible", "failure"])
+        firsts = range(0, len(numbers), ROWS_AT_ONCE)
+        parts = [self._part(numbers[first : first + ROWS_AT_ONCE], answers) for first in firsts]
+        table = parts[0] if len(parts) == 1 else pd.concat(parts, ignore_index=True)
         for name in table.columns:
             if table[name].dtype == object and name not in ("variant", "failure", "by"):
-                numbers = pd.to_numeric(table[name], errors="coerce")
-                if numbers.notna().sum() == table[name].notna().sum():
-                    table[name] = numbers
-        last = {name: table.pop(name) for name in ("by", "error_K", "failure")}
-        last["failure"] = last["failure"].fillna("")
-        feasible = (last["failure"] == "") & self._within_limits(table)
-        return table.assign(by=last["by"], error_K=last["error_K"], feasible=feasible, failure=last["failure"])
+                numeric = pd.to_numeric(table[name], errors="coerce")
+                if numeric.notna().sum() == table[name].notna().sum():
+                    table[name] = numeric
+        return self._judged(table)
 
-    def _row(self, number: int) -> dict[str, Any]:
-        outcome, values = self.outcomes[number], self.plan.row(number)
-        if isinstance(outcome, Failed):
-            return values | {"by": "", "error_K": None, "failure": outcome.reason}
-        error = self.certificate.error_of(outcome.error) if outcome.by == "reduced" and self.certificate else 0.0
-        return values | dict(outcome.answers) | {"by": outcome.by, "error_K": error, "failure": ""}
+    def _part(self, numbers: Numbers, answers: Sequence[str]) -> pd.DataFrame:
+        """The rows of a few variants, without ``feasible``."""
+        import pandas as pd
+
+        settings = pd.DataFrame([self.plan.row(number) for number in numbers.tolist()])
+        columns = self.packed.columns(numbers, answers)
+        known = {name: values for name, values in columns.answers.items() if name in self.answers}
+        last = {"by": columns.by, "error_K": self._errors(columns), "failure": columns.failures}
+        return pd.DataFrame({**{name: settings[name] for name in settings}, **known, **last})
+
+    def _errors(self, columns: OutcomeColumns) -> NDArray[np.float64]:
+        """Estimated errors, K: 0 of full runs, NaN of failures."""
+        errors = np.where(columns.by == "", np.nan, 0.0)
+        if self.certificate is not None:
+            for row in np.flatnonzero(columns.by == "reduced"):
+                estimate = float(columns.errors[row])
+                errors[row] = self.certificate.error_of(None if math.isnan(estimate) else estimate)
+        return errors
+
+    def _judged(self, table: pd.DataFrame) -> pd.DataFrame:
+        """The table with the column ``feasible``."""
+        feasible = (table["failure"] == "") & self._within_limits(table)
+        table.insert(table.columns.get_loc("failure"), "feasible", feasible)
+        return table
 
     def _within_limits(self, table: pd.DataFrame) -> Any:
         within = np.ones(len(table), dtype=bool)
@@ -104,23 +163,22 @@ class Sweep(Brief):
     @functools.cached_property
     def answers(self) -> list[str]:
         """Names of the answers."""
-        return list(dict.fromkeys(name for outcome in self.answered.values() for name in outcome.answers))
+        return self.packed.names
 
-    @functools.cached_property
-    def answered(self) -> dict[int, Answered]:
-        """Number -> outcome, of all variants with answers."""
-        return {number: outcome for number, outcome in self.outcomes.items() if isinstance(outcome, Answered)}
+    @property
+    def answered(self) -> Iterator[tuple[int, Answered]]:
+        """(number, outcome) of all variants with answers, by number."""
+        return ((number, outcome) for number, outcome in self.packed.items() if isinstance(outcome, Answered))
 
     @property
     def reduced(self) -> int:
         """Number of variants that the reduced model answered."""
-        return sum(outcome.by == "reduced" for outcome in self.answered.values())
+        return self.packed.reduced
 
-    @property
+    @functools.cached_property
     def failed(self) -> dict[str, str]:
         """Variant -> reason of its failure."""
-        outcomes = sorted(self.outcomes.items())
-        return {self.plan.names[n]: outcome.reason for n, outcome in outcomes if isinstance(outcome, Failed)}
+        return {self.plan.names[number]: outcome.reason for number, outcome in self.packed.failed.items()}
 
     @property
     def complete(self) -> bool:
@@ -147,11 +205,9 @@ def sweep(plan: Plan, execution: Execution | None = None, **options: Unpack[Exec
     work = VariantEvaluation(plan, execution, plan.variants, plan.digest)
     try:
         with work:
-            for number in numbers:
-                work.resume(number)
             execution.report_progress("variants", len(work.outcomes), len(numbers))
-            left = [number for number in numbers if number not in work.outcomes]
-            if left:
+            left = work.outcomes.without(np.arange(len(numbers), dtype=np.intp))
+            if len(left):
                 work.train(len(left))
             for finished in work.evaluate(left):
                 execution.report_progress("variants", finished, len(numbers))

@@ -18,7 +18,7 @@ from tyrefem.quantity import written
 from tyrefem.variants.answers import check_answer
 from tyrefem.variants.card import LimitCard, SweepCard, VaryCard
 from tyrefem.variants.links import Links, check_apart, check_links, members
-from tyrefem.variants.samples import check_distinct, drawn, grid, listed, size_of
+from tyrefem.variants.samples import Counted, Grid, check_distinct, drawn, listed, size_of
 from tyrefem.variants.task import Bundle, Task, bundle
 from tyrefem.variants.varied import Varied, factor_of, factored, uncertain, varied
 
@@ -29,15 +29,15 @@ class Plan:
 
     Parameters
     ----------
-    study : the study. varied : the varied numbers; empty if the variants come from a list. variants : changes of each.
-    names : of the variants. limits : answer -> its limits. time_to : see `answers`. sampling : description of the
+    study : the study. varied : the varied numbers; empty if the variants come from a list. variants : changes of each,
+    made when they are asked for. names : of the variants. limits : answer -> its limits. time_to : see `answers`. sampling : description of the
         sample, for the record. linked : names of a list that set several numbers or give a factor.
     """
 
     study: StudyData
     varied: tuple[Varied, ...]
-    variants: tuple[Mapping[str, Any], ...]
-    names: tuple[str, ...]
+    variants: Sequence[Mapping[str, Any]]
+    names: Sequence[str]
     limits: Mapping[str, LimitCard]
     time_to: float | None
     sampling: Mapping[str, Any]
@@ -51,8 +51,14 @@ class Plan:
     @functools.cached_property
     def digest(self) -> str:
         """Digest of the study, its files, and all variants in their order."""
-        text = json.dumps([self.packed.digest, list(self.variants), self.time_to], sort_keys=True, default=str)
-        return hashlib.sha256(text.encode()).hexdigest()[:16]
+        # The text of [study, [variants], time_to] as JSON, without all variants in memory.
+        study, time_to = (json.dumps(part, sort_keys=True) for part in (self.packed.digest, self.time_to))
+        digest = hashlib.sha256(f"[{study}, [".encode())
+        for number, changes in enumerate(self.variants):
+            digest.update(b", " if number else b"")
+            digest.update(json.dumps(changes, sort_keys=True, default=str).encode())
+        digest.update(f"], {time_to}]".encode())
+        return digest.hexdigest()[:16]
 
     @property
     def keys(self) -> list[str]:
@@ -109,11 +115,13 @@ def planned(study: StudyData, card: SweepCard, near: Path | None = None) -> Plan
             table = next(part for part in ("limits", "answers", "pareto") if name in getattr(card, part))
             raise error.within(field=table) from None
     names: Sequence[str]
+    variants: Sequence[Mapping[str, Any]]
     linked: tuple[Varied, ...] = ()
     if card.chosen == "list":
         assert card.cases is not None
         path = (near or Path()) / card.cases
-        variants, names = listed(path)
+        variants, listed_names = listed(path)
+        names = tuple(listed_names)
         chosen: tuple[Varied, ...] = ()
         try:
             check_links(study, card.link, [*_used(card), *(name for changes in variants for name in changes)])
@@ -135,11 +143,11 @@ def planned(study: StudyData, card: SweepCard, near: Path | None = None) -> Plan
         if not card.sampled:
             variants = []
         elif card.chosen == "grid":
-            variants = grid(chosen)
+            variants = Grid(chosen)
         else:
             assert card.count is not None
             variants = drawn(chosen, card.chosen, card.count, card.seed)
-        names = [str(number + 1) for number in range(len(variants))]
+        names = Counted(len(variants))
         if card.chosen != "saltelli":
             check_distinct(variants, names)
     seed = card.seed if card.chosen in ("latin-hypercube", "sobol", "saltelli") else None
@@ -150,7 +158,7 @@ def planned(study: StudyData, card: SweepCard, near: Path | None = None) -> Plan
     if card.uncertain is not None:
         also = {part.key: [key for key, _ in part.also] for part in chosen if part.also and not part.name}
         sampling |= {"uncertain": card.uncertain, "also": also, "left_out": left_out(study.uncertain_numbers)}
-    return Plan(study, chosen, tuple(variants), tuple(names), dict(card.limits), card.time_to, sampling, linked)
+    return Plan(study, chosen, variants, names, dict(card.limits), card.time_to, sampling, linked)
 
 
 def _used(card: SweepCard) -> list[str]:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-import itertools
+import hashlib
 import math
-from collections.abc import Sequence
+from abc import abstractmethod
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -56,13 +58,89 @@ def check_size(count: int, numbers: int, what: str, field: str) -> None:
         raise error.within(field=field) from None
 
 
-def grid(varied: Sequence[Varied]) -> list[dict[str, Any]]:
+class Variants(Sequence[Mapping[str, Any]]):
+    """The changes of all variants of a sample, made when they are asked for; equal to a sequence of the same changes."""
+
+    @abstractmethod
+    def changes(self, number: int) -> dict[str, Any]:
+        """The changes of a variant."""
+
+    @overload
+    def __getitem__(self, number: int) -> Mapping[str, Any]: ...
+    @overload
+    def __getitem__(self, number: slice) -> list[Mapping[str, Any]]: ...
+    def __getitem__(self, number: int | slice) -> Mapping[str, Any] | list[Mapping[str, Any]]:
+        places = range(len(self))[number]
+        return self.changes(places) if isinstance(places, int) else [self.changes(place) for place in places]
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Sequence) or len(self) != len(other):
+            return False
+        return all(mine == theirs for mine, theirs in zip(self, other, strict=True))
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__} of {len(self)} variants"
+
+
+class Grid(Variants):
     """Every combination of the levels; the last name varies fastest.
 
-    >>> grid([Varied("a", values=(1, 2)), Varied("b", values=("x",))])
+    >>> list(Grid((Varied("a", values=(1, 2)), Varied("b", values=("x",)))))
     [{'a': 1, 'b': 'x'}, {'a': 2, 'b': 'x'}]
     """
-    return [_changes(varied, values) for values in itertools.product(*(number.grid for number in varied))]
+
+    def __init__(self, varied: Sequence[Varied]) -> None:
+        self._levels = [[number.changes(value) for value in number.grid] for number in varied]
+
+    def __len__(self) -> int:
+        return math.prod(map(len, self._levels))
+
+    def changes(self, number: int) -> dict[str, Any]:
+        """The changes of a combination."""
+        chosen = []
+        for levels in reversed(self._levels):
+            number, place = divmod(number, len(levels))
+            chosen.append(levels[place])
+        return {key: value for changes in reversed(chosen) for key, value in changes.items()}
+
+
+class Points(Variants):
+    """The values at points of the unit cube, a row each."""
+
+    def __init__(self, varied: Sequence[Varied], points: Array) -> None:
+        self.varied, self.points = varied, points
+
+    def __len__(self) -> int:
+        return len(self.points)
+
+    def changes(self, number: int) -> dict[str, Any]:
+        """The changes at a point."""
+        return changes_at(self.varied, self.points[number])
+
+
+@dataclass(frozen=True)
+class Counted(Sequence[str]):
+    """The names "1", "2", ... of so many variants.
+
+    >>> names = Counted(3)
+    >>> list(names), names.index("3"), "4" in names
+    (['1', '2', '3'], 2, False)
+    """
+
+    size: int
+
+    def __len__(self) -> int:
+        return self.size
+
+    @overload
+    def __getitem__(self, number: int) -> str: ...
+    @overload
+    def __getitem__(self, number: slice) -> list[str]: ...
+    def __getitem__(self, number: int | slice) -> str | list[str]:
+        places = range(1, self.size + 1)[number]
+        return str(places) if isinstance(places, int) else [str(place) for place in places]
 
 
 def _changes(varied: Sequence[Varied], values: Sequence[Any]) -> dict[str, Any]:
@@ -99,9 +177,9 @@ def problem(varied: Sequence[Varied]) -> dict[str, Any]:
     return {"num_vars": len(varied), "names": [number.label for number in varied], "bounds": [[0.0, 1.0]] * len(varied)}
 
 
-def drawn(varied: Sequence[Varied], sample: str, count: int, seed: int) -> list[dict[str, Any]]:
+def drawn(varied: Sequence[Varied], sample: str, count: int, seed: int) -> Points:
     """The changes of all variants of a sample."""
-    return [changes_at(varied, row) for row in places(varied, sample, count, seed)]
+    return Points(varied, places(varied, sample, count, seed))
 
 
 def changes_at(varied: Sequence[Varied], place: Sequence[float] | Array) -> dict[str, Any]:
@@ -131,11 +209,20 @@ def listed(path: Path) -> tuple[list[dict[str, Any]], list[str]]:
     return changes, names
 
 
-def check_distinct(variants: Sequence[dict[str, Any]], names: Sequence[str]) -> None:
-    """Raise `InputError` if two variants are equal."""
-    names_of_changes: dict[str, str] = {}
-    for changes, name in zip(variants, names, strict=True):
-        key = repr(sorted((key, str(value)) for key, value in changes.items()))
-        if key in names_of_changes:
-            raise InputError(f"variants '{names_of_changes[key]}' and '{name}' are the same: delete one of them")
-        names_of_changes[key] = name
+def check_distinct(variants: Sequence[Mapping[str, Any]], names: Sequence[str]) -> None:
+    """Raise `InputError` if two variants are equal. Memory: eight bytes for a variant."""
+    digests = np.fromiter((_digest(changes) for changes in variants), dtype=np.uint64, count=len(variants))
+    order = np.argsort(digests, kind="stable")
+    again = np.flatnonzero(digests[order][1:] == digests[order][:-1])
+    for first, second in sorted((int(order[place]), int(order[place + 1])) for place in again):
+        if _comparable(variants[first]) == _comparable(variants[second]):
+            raise InputError(f"variants '{names[first]}' and '{names[second]}' are the same: delete one of them")
+
+
+def _comparable(changes: Mapping[str, Any]) -> str:
+    return repr(sorted((key, str(value)) for key, value in changes.items()))
+
+
+def _digest(changes: Mapping[str, Any]) -> int:
+    """A number of 64 bits that equal changes share."""
+    return int.from_bytes(hashlib.blake2b(_comparable(changes).encode(), digest_size=8).digest(), "little")
