@@ -81,7 +81,7 @@ def write_table(table: pd.DataFrame, folder: Path, name: str) -> list[str]:
 
 
 def write_parts(parts: Iterator[pd.DataFrame], folder: Path, name: str) -> list[str]:
-    """As `write_table`, for the parts of a long table one after the other; the Parquet file has a row group for each."""
+    """As `write_table`, for the parts of a long table one after the other: row groups of the Parquet file."""
     import pyarrow
     from pyarrow import parquet
 

@@ -17,9 +17,9 @@ import numpy as np
 
 from tyrefem.estimates import work as estimate
 from tyrefem.simulation.estimate import RunEstimate
-from tyrefem.variants.execution import Execution
 from tyrefem.sweep.reduced_tasks import by_model
 from tyrefem.variants.blocks import Numbers, PackedOutcomes
+from tyrefem.variants.execution import Execution
 from tyrefem.variants.outcome_table import OutcomeTable
 from tyrefem.variants.outcomes import Failed, Outcome
 from tyrefem.variants.plan import Plan
@@ -157,7 +157,7 @@ class VariantEvaluation:
         if self._store is not None:
             self._store.note(CERTIFICATE, asdict(self.certificate))
 
-    def evaluate(self, numbers: Sequence[int], *, full: bool = False) -> Iterator[int]:
+    def evaluate(self, numbers: Sequence[int] | Numbers, *, full: bool = False) -> Iterator[int]:
         """Evaluate variants; yields the number of finished variants after every task. ``full``: by full runs only."""
         if self.reduced and self._model is None and not full and len(numbers):
             self._train_model()

@@ -10,7 +10,7 @@ import numpy as np
 
 from tyrefem.variants.blocks import PackedOutcomes, packed
 from tyrefem.variants.execution import Execution
-from tyrefem.variants.outcomes import Failed, NotReducible
+from tyrefem.variants.outcomes import Failed, NotReducible, Outcome
 from tyrefem.variants.plan import Plan
 from tyrefem.variants.task_list import TaskList, task_size
 
@@ -32,12 +32,11 @@ def perform_pieces(task: PiecesTask, model: PackedModel) -> PackedOutcomes:
     """Run in a worker: the outcomes by place in the task; those that are `NotReducible` are left out."""
     from tyrefem.reduced.training_rounds import ReducedTask, perform_reduced
 
-    outcomes = {}
+    outcomes: dict[int, Outcome] = {}
     for first in range(0, len(task.changes), task.piece):
         part = ReducedTask(task.changes[first : first + task.piece], task.time_to)
-        for place, outcome in enumerate(perform_reduced(part, model), first):
-            if not isinstance(outcome, NotReducible):
-                outcomes[place] = outcome
+        numbered = enumerate(perform_reduced(part, model), first)
+        outcomes |= {place: outcome for place, outcome in numbered if not isinstance(outcome, NotReducible)}
     return packed(outcomes)
 
 

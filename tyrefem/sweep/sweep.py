@@ -16,10 +16,10 @@ from tyrefem.brief import Brief
 from tyrefem.cache import Cache
 from tyrefem.errors import InputError, nearest
 from tyrefem.sweep.evaluation import VariantEvaluation
-from tyrefem.variants.dask_cluster import ClusterLostError
-from tyrefem.variants.execution import Execution, ExecutionOptions
 from tyrefem.variants.answers import TIME_TO
 from tyrefem.variants.blocks import Numbers
+from tyrefem.variants.dask_cluster import ClusterLostError
+from tyrefem.variants.execution import Execution, ExecutionOptions
 from tyrefem.variants.outcome_table import OutcomeColumns, OutcomeTable
 from tyrefem.variants.outcomes import Answered, Outcome
 from tyrefem.variants.plan import Plan
@@ -102,7 +102,7 @@ class Sweep(Brief):
         settings = self.overview().dtypes
         for first in range(0, len(numbers), rows):
             part = self._part(numbers[first : first + rows], self.answers)
-            types = {name: settings[name] for name in self.plan.headings if name in settings}
+            types: dict[str, Any] = {name: settings[name] for name in self.plan.headings if name in settings}
             types |= {name: np.dtype(object if name in texts else float) for name in self.answers}
             yield self._judged(part.astype({name: kind for name, kind in types.items() if name in part}))
 
@@ -144,7 +144,7 @@ class Sweep(Brief):
     def _judged(self, table: pd.DataFrame) -> pd.DataFrame:
         """The table with the column ``feasible``."""
         feasible = (table["failure"] == "") & self._within_limits(table)
-        table.insert(table.columns.get_loc("failure"), "feasible", feasible)
+        table.insert(list(table.columns).index("failure"), "feasible", feasible)
         return table
 
     def _within_limits(self, table: pd.DataFrame) -> Any:

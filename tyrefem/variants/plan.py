@@ -30,8 +30,9 @@ class Plan:
     Parameters
     ----------
     study : the study. varied : the varied numbers; empty if the variants come from a list. variants : changes of each,
-    made when they are asked for. names : of the variants. limits : answer -> its limits. time_to : see `answers`. sampling : description of the
-        sample, for the record. linked : names of a list that set several numbers or give a factor.
+    made when they are asked for. names : of the variants. limits : answer -> its limits. time_to : see `answers`.
+    sampling : description of the sample, for the record. linked : names of a list that set several numbers or give a
+        factor.
     """
 
     study: StudyData

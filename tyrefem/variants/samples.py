@@ -59,7 +59,7 @@ def check_size(count: int, numbers: int, what: str, field: str) -> None:
 
 
 class Variants(Sequence[Mapping[str, Any]]):
-    """The changes of all variants of a sample, made when they are asked for; equal to a sequence of the same changes."""
+    """The changes of all variants of a sample, made when they are asked for."""
 
     @abstractmethod
     def changes(self, number: int) -> dict[str, Any]:

@@ -30,7 +30,9 @@ TOGETHER = 4096
 #: Bytes of a line that are read first: the head of a block with successive numbers is shorter.
 HEAD = 160
 #: Head of a block: its length in bytes, so that its content need not be read; `Store` has the whole line.
-_HEAD = re.compile(rb'\{"bytes": +(\d+), "variants": "([-,0-9]+)", "by": "(full|reduced)", "names": (\d+), "columns": "')
+_HEAD = re.compile(
+    rb'\{"bytes": +(\d+), "variants": "([-,0-9]+)", "by": "(full|reduced)", "names": (\d+), "columns": "'
+)
 #: New blocks within the first so many bytes of the file stay in memory, too.
 HELD = 2**25
 #: Width of the length in a head.
@@ -45,8 +47,8 @@ class Store:
     of a killed sweep, is dropped with a warning.
 
     - ``{"plan": digest}``, first: the plan.
-    - ``{"names": [answer, ...], "texts": [...]}``: names of answers, and which are texts; blocks refer to these lines by
-      their number.
+    - ``{"names": [answer, ...], "texts": [...]}``: names of answers, and which are texts; blocks refer to these lines
+      by their number.
     - ``{"bytes": length, "variants": "0-63", "by": ..., "names": number, "columns": base64}``: a `Block`. When the file
       is opened, only its head is read.
     - ``{"variant": name, "answers": {...}}`` or ``{"variant": name, "failure": "..."}``: a single outcome.
@@ -211,8 +213,8 @@ class Store:
         for block, begin, end in stored:
             content = block.content if end < HELD else Content(self.path, begin, end)
             # The names of all such blocks are the same object.
-            names, texts = list(self._names)[self._names[block.names, block.texts]]
-            self.outcomes.add(Block(block.numbers, names, texts, block.by, content))
+            shared = list(self._names)[self._names[block.names, block.texts]]
+            self.outcomes.add(Block(block.numbers, *shared, block.by, content))
         self.outcomes.update(new.singles)
 
     def add_by_name(self, outcomes: Mapping[str, Outcome]) -> None:
