@@ -70,6 +70,8 @@ class Block:
             shuffled = np.frombuffer(data, dtype=np.uint8).reshape(rows, 8, count)
             values = np.ascontiguousarray(shuffled.transpose(0, 2, 1)).view("<f8")[..., 0]
             return Columns(values[:-1], values[-1], json.loads(texts))
+        except InputError:
+            raise
         except (zlib.error, ValueError):
             message = "a record of finished variants is damaged; delete them with --restart"
             raise InputError(message, file=getattr(self.content, "path", None)) from None

@@ -114,6 +114,8 @@ class Store:
                 head = self._head(file) if self._end else None
                 try:
                     length = self._read_block(file, head) if head else self._read_single(file, singles)
+                except InputError:
+                    raise
                 except (ValueError, KeyError, TypeError, IndexError):
                     raise self._unreadable() from None
                 if not length:
