@@ -17,8 +17,8 @@ from tyrefem.variants.outcomes import Answered, Outcome
 
 Array = NDArray[np.float64]
 Numbers = NDArray[np.intp]
-#: Fewer outcomes than this are not worth a block; a block has at most so many.
-LEAST, MOST = 8, 512
+#: A block has at least and at most so many outcomes.
+LEAST, MOST = 2, 512
 
 
 @dataclass(frozen=True, eq=False)
