@@ -68,10 +68,14 @@ class Variants(Sequence[Mapping[str, Any]]):
     @overload
     def __getitem__(self, number: int) -> Mapping[str, Any]: ...
     @overload
-    def __getitem__(self, number: slice) -> list[Mapping[str, Any]]: ...
-    def __getitem__(self, number: int | slice) -> Mapping[str, Any] | list[Mapping[str, Any]]:
+    def __getitem__(self, number: slice) -> Sequence[Mapping[str, Any]]: ...
+    def __getitem__(self, number: int | slice) -> Mapping[str, Any] | Sequence[Mapping[str, Any]]:
         places = range(len(self))[number]
-        return self.changes(places) if isinstance(places, int) else [self.changes(place) for place in places]
+        return self.changes(places) if isinstance(places, int) else self.chosen(np.array(places, dtype=np.intp))
+
+    def chosen(self, numbers: NDArray[np.intp]) -> Sequence[Mapping[str, Any]]:
+        """The changes of some variants."""
+        return [self.changes(number) for number in numbers.tolist()]
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Sequence) or len(self) != len(other):
@@ -107,7 +111,7 @@ class Grid(Variants):
 
 
 class Points(Variants):
-    """The values at points of the unit cube, a row each."""
+    """The values at points of the unit cube, a row each. A part of them is as small as its points when it is sent."""
 
     def __init__(self, varied: Sequence[Varied], points: Array) -> None:
         self.varied, self.points = varied, points
@@ -118,6 +122,10 @@ class Points(Variants):
     def changes(self, number: int) -> dict[str, Any]:
         """The changes at a point."""
         return changes_at(self.varied, self.points[number])
+
+    def chosen(self, numbers: NDArray[np.intp]) -> Points:
+        """The changes at some of the points."""
+        return Points(self.varied, self.points[numbers])
 
 
 @dataclass(frozen=True)
