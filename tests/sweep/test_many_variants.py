@@ -19,9 +19,12 @@ from tyrefem.reports.sweep import ROWS_OF_VARIANTS, chosen_rows
 from tyrefem.reports.sweep_files import save, write_parts, write_table
 from tyrefem.sweep.design import DesignData, questions
 from tyrefem.sweep.evaluation import VariantEvaluation
+from tyrefem.sweep.reduced_tasks import by_model
 from tyrefem.sweep.sweep import sweep
+from tyrefem.variants.blocks import packed
 from tyrefem.variants.execution import Execution, SweepSettings
-from tyrefem.variants.outcomes import Answered, Failed, Outcome
+from tyrefem.variants.outcome_table import OutcomeTable
+from tyrefem.variants.outcomes import Answered, Failed, Outcome, answer_of
 from tyrefem.variants.plan import Plan, card_of, plan_of
 from tyrefem.variants.samples import check_distinct
 from tyrefem.variants.store import NAME
@@ -175,6 +178,44 @@ def test_the_page_has_the_front_and_the_extreme_answers() -> None:
     assert {40, 3000, *extremes} <= set(places)
     assert 17 not in places or table["b"].rank()[17] < 200
     assert list(chosen_rows(table.head(300), set(), ["a"])) == list(range(300))
+
+
+class Deadly:
+    """A scheduler on which every task of more than 32 variants, and every task with variant 40, ends its worker."""
+
+    workers = 1
+
+    def __init__(self) -> None:
+        self.sizes: list[int] = []
+
+    def outcomes(self, work: Any, tasks: Any, common: Any = None) -> Iterator[tuple[int, Any]]:
+        for place, task in enumerate(tasks):
+            speeds = [float(changes["drive.speed"].split()[0]) for changes in task.changes]
+            self.sizes.append(len(speeds))
+            if len(speeds) > 32 or 40.0 in speeds:
+                yield place, Failed("its process died")
+            else:
+                yield place, packed({n: Answered({"hottest_degC": speed}, "reduced") for n, speed in enumerate(speeds)})
+
+
+class NoModel:
+    """In place of a reduced model that nobody uses."""
+
+    def packed(self, _: Any) -> None:
+        return None
+
+
+def test_variants_of_a_task_that_ends_its_worker_are_tried_in_smaller_tasks() -> None:
+    speeds = {"drive.speed": ("1 km/h", "1024 km/h", 1024)}
+    plan, deadly = plan_of(study("nasa-22x5.5-8pr", COARSE), speeds), Deadly()
+    execution = Execution(deadly, settings=SweepSettings(piece=32))
+    model: Any = NoModel()
+    outcomes = OutcomeTable()
+    for part in by_model(model, plan, plan.variants, execution):
+        outcomes.update(part)
+    by_place = {number: answer_of(outcome, "hottest_degC") for number, outcome in outcomes.items()}
+    assert deadly.sizes == [64] * 16 + [32] * 32
+    assert by_place == {n: n + 1.0 for n in range(1024) if not 32 <= n < 64}
 
 
 @pytest.mark.parametrize(("count", "workers"), [(1000, 2), (10**5, 2), (10**7, 100), (10**7, 800)])

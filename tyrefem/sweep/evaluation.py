@@ -23,7 +23,7 @@ from tyrefem.variants.execution import Execution
 from tyrefem.variants.outcome_table import OutcomeTable
 from tyrefem.variants.outcomes import Failed, Outcome
 from tyrefem.variants.plan import Plan
-from tyrefem.variants.samples import Variants
+from tyrefem.variants.samples import chosen
 from tyrefem.variants.schedulers import Here, Local
 from tyrefem.variants.store import Store
 from tyrefem.variants.task import Task, perform, perform_all
@@ -164,15 +164,9 @@ class VariantEvaluation:
             self._train_model()
         wanted = np.asarray(numbers, dtype=np.intp)
         if self._model is not None and not full and len(wanted):
-            for outcomes in by_model(self._model, self.plan, self._chosen(wanted), self.execution):
+            for outcomes in by_model(self._model, self.plan, chosen(self.variants, wanted), self.execution):
                 yield self._keep(outcomes.numbered(wanted))
         yield from self._run_in_full(self.outcomes.without(wanted), self.execution.settings.piece)
-
-    def _chosen(self, numbers: Numbers) -> Sequence[Mapping[str, Any]]:
-        """The changes of some variants."""
-        if isinstance(self.variants, Variants):
-            return self.variants.chosen(numbers)
-        return [self.variants[number] for number in numbers.tolist()]
 
     def _run_in_full(self, left: Numbers, most: int) -> Iterator[int]:
         """Run variants in full, several in a task if they are many, to limit the scheduler's load."""

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tyrefem.variants.blocks import PackedOutcomes, packed
+from tyrefem.variants.blocks import Numbers, PackedOutcomes, packed
 from tyrefem.variants.execution import Execution
 from tyrefem.variants.outcomes import Failed, NotReducible, Outcome
 from tyrefem.variants.plan import Plan
+from tyrefem.variants.samples import chosen
 from tyrefem.variants.task_list import TaskList, task_size
 
 if TYPE_CHECKING:
@@ -40,16 +42,32 @@ def perform_pieces(task: PiecesTask, model: PackedModel) -> PackedOutcomes:
     return packed(outcomes)
 
 
+def _task(
+    variants: Sequence[Mapping[str, Any]], parts: Sequence[Numbers], time_to: float | None, piece: int, place: int
+) -> PiecesTask:
+    return PiecesTask(chosen(variants, parts[place]), time_to, piece)
+
+
 def by_model(
     trained: Surrogate, plan: Plan, variants: Sequence[Mapping[str, Any]], execution: Execution
 ) -> Iterator[PackedOutcomes]:
-    """Outcomes of variants by place, as tasks finish; variants that are `NotReducible` are left to full runs."""
+    """Outcomes of variants by place, as tasks finish; variants that are `NotReducible` are left to full runs.
+
+    The variants of a task that ends its worker are tried again in tasks of one piece, then left to full runs.
+    """
     where, piece = execution.where, execution.settings.piece
-    size = task_size(len(variants), max(getattr(where, "workers", 1), 1), piece)
-    firsts = range(0, len(variants), size)
-    tasks = TaskList(
-        len(firsts), lambda place: PiecesTask(variants[firsts[place] : firsts[place] + size], plan.time_to, piece)
-    )
-    for place, outcomes in where.outcomes(perform_pieces, tasks, trained.packed(plan.packed)):
-        if not isinstance(outcomes, Failed):
-            yield outcomes.numbered(np.arange(firsts[place], firsts[place] + size))
+    model = trained.packed(plan.packed)
+    left: Numbers = np.arange(len(variants), dtype=np.intp)
+    sizes = (task_size(len(left), max(getattr(where, "workers", 1), 1), piece), piece)
+    for size in dict.fromkeys(sizes):
+        parts = [left[first : first + size] for first in range(0, len(left), size)]
+        tasks = TaskList(len(parts), functools.partial(_task, variants, parts, plan.time_to, piece))
+        lost = []
+        for place, outcomes in where.outcomes(perform_pieces, tasks, model):
+            if isinstance(outcomes, Failed):
+                lost.append(parts[place])
+            else:
+                yield outcomes.numbered(parts[place])
+        if not lost:
+            return
+        left = np.concatenate(lost)

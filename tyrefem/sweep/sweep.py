@@ -104,7 +104,8 @@ class Sweep(Brief):
             part = self._part(numbers[first : first + rows], self.answers)
             types: dict[str, Any] = {name: settings[name] for name in self.plan.headings if name in settings}
             types |= {name: np.dtype(object if name in texts else float) for name in self.answers}
-            yield self._judged(part.astype({name: kind for name, kind in types.items() if name in part}))
+            shown: dict[Any, Any] = {name: kind for name, kind in types.items() if name in part}
+            yield self._judged(part.astype(shown))
 
     def _joined(self, numbers: Numbers, answers: Sequence[str]) -> pd.DataFrame:
         """The rows of some variants with some answers, part by part, so that few are in memory as objects."""

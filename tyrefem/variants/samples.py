@@ -88,6 +88,11 @@ class Variants(Sequence[Mapping[str, Any]]):
         return f"{type(self).__name__} of {len(self)} variants"
 
 
+def chosen(variants: Sequence[Mapping[str, Any]], numbers: NDArray[np.intp]) -> Sequence[Mapping[str, Any]]:
+    """The changes of some variants of a sample, or of a list."""
+    return variants.chosen(numbers) if isinstance(variants, Variants) else [variants[n] for n in numbers.tolist()]
+
+
 class Grid(Variants):
     """Every combination of the levels; the last name varies fastest.
 
