@@ -131,7 +131,7 @@ class Sweep(Brief):
         columns = self.packed.columns(numbers, answers)
         known = {name: values for name, values in columns.answers.items() if name in self.answers}
         last = {"by": columns.by, "error_K": self._errors(columns), "failure": columns.failures}
-        return pd.DataFrame({**{name: settings[name] for name in settings}, **known, **last})
+        return pd.concat([settings, pd.DataFrame({**known, **last})], axis=1)
 
     def _errors(self, columns: OutcomeColumns) -> NDArray[np.float64]:
         """Estimated errors, K: 0 of full runs, NaN of failures."""

@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 
 from tyrefem.errors import InputError, ResultWarning
+from tyrefem.interruption import interruption_delayed
 from tyrefem.output import begin_writing, end_writing, jsonable
 from tyrefem.variants.blocks import Block, Numbers, PackedOutcomes
 from tyrefem.variants.outcome_table import OutcomeTable
@@ -197,6 +198,11 @@ class Store:
     def add(self, outcomes: Mapping[int, Outcome] | PackedOutcomes) -> None:
         """Store outcomes of numbered variants; a second outcome of the same variant is ignored."""
         new = self.outcomes.new(outcomes)
+        # Ctrl-C must not come between the file and the memory.
+        with interruption_delayed():
+            self._add(new)
+
+    def _add(self, new: PackedOutcomes) -> None:
         lines: list[bytes] = []
         stored: list[tuple[Block, int, int]] = []
         place = self._end
@@ -222,13 +228,15 @@ class Store:
     def add_by_name(self, outcomes: Mapping[str, Outcome]) -> None:
         """Store outcomes of variants with other names than numbers; a second outcome of the same name is ignored."""
         new = {name: outcome for name, outcome in outcomes.items() if name not in self.by_name}
-        self._write(b"".join(_line({"variant": name, **outcome.entry}) for name, outcome in new.items()))
-        self.by_name |= new
+        with interruption_delayed():
+            self._write(b"".join(_line({"variant": name, **outcome.entry}) for name, outcome in new.items()))
+            self.by_name |= new
 
     def note(self, name: str, value: Any) -> None:
         """Store a value that belongs to all variants."""
-        self._write(_line({"note": name, "value": value}))
-        self.notes[name] = value
+        with interruption_delayed():
+            self._write(_line({"note": name, "value": value}))
+            self.notes[name] = value
 
     def _write(self, lines: bytes) -> None:
         try:
