@@ -37,7 +37,7 @@ class Columns:
 
 
 @dataclass(frozen=True, eq=False)
-class Block:
+class OutcomeBlock:
     """Outcomes with the same answers, computed in the same way.
 
     Floats are stored to the last bit: all first bytes of a column, all second bytes, and so on, then compressed by
@@ -76,7 +76,7 @@ class Block:
             message = "a record of finished variants is damaged; delete them with --restart"
             raise InputError(message, file=getattr(self.content, "path", None)) from None
 
-    def numbered(self, numbers: Numbers) -> Block:
+    def numbered(self, numbers: Numbers) -> OutcomeBlock:
         """The block with other numbers of its variants."""
         return replace(self, numbers=np.asarray(numbers)[self.numbers])
 
@@ -92,7 +92,7 @@ class Block:
 class PackedOutcomes:
     """Outcomes in blocks, and single ones: failures, values that are neither floats nor texts, and a few outcomes."""
 
-    blocks: Sequence[Block]
+    blocks: Sequence[OutcomeBlock]
     singles: Mapping[int, Outcome]
 
     def numbered(self, numbers: Numbers) -> PackedOutcomes:
@@ -137,7 +137,7 @@ def _kind(outcome: Outcome) -> Any:
     return outcome.by, tuple(outcome.answers), tuple(issubclass(kind, str) for kind in kinds)
 
 
-def _block(outcomes: Mapping[int, Outcome], numbers: Sequence[int]) -> Block:
+def _block(outcomes: Mapping[int, Outcome], numbers: Sequence[int]) -> OutcomeBlock:
     rows: list[Answered] = [outcomes[number] for number in numbers]  # type: ignore[misc]
     names = tuple(rows[0].answers)
     texts: dict[str, list[str]] = {}
@@ -152,4 +152,4 @@ def _block(outcomes: Mapping[int, Outcome], numbers: Sequence[int]) -> Block:
     values[-1] = [math.nan if row.error is None else row.error for row in rows]
     shuffled = values.view(np.uint8).reshape(len(values), len(rows), 8).transpose(0, 2, 1)
     content = zlib.compress(json.dumps(texts).encode() + b"\n" + shuffled.tobytes(), 1)
-    return Block(np.array(numbers, dtype=np.intp), names, tuple(texts), rows[0].by, content)
+    return OutcomeBlock(np.array(numbers, dtype=np.intp), names, tuple(texts), rows[0].by, content)

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.cache import Cache
-from tyrefem.variants.blocks import Block, Columns, Numbers, PackedOutcomes, packed
+from tyrefem.variants.blocks import Columns, Numbers, OutcomeBlock, PackedOutcomes, packed
 from tyrefem.variants.outcomes import Answered, Failed, Outcome
 
 #: Blocks that are kept unpacked.
@@ -39,7 +39,7 @@ class OutcomeColumns:
 class OutcomeTable(Mapping[int, Outcome]):
     """Outcomes by number, in the order of the numbers.
 
-    Memory: four bytes for every variant, and its share of a block, which may stay on disk; see `Block`.
+    Memory: four bytes for every variant, and its share of a block, which may stay on disk; see `OutcomeBlock`.
 
     >>> table = OutcomeTable()
     >>> table.update({n: Answered({"hottest_degC": 50.0 + n}) for n in range(100)})
@@ -48,7 +48,7 @@ class OutcomeTable(Mapping[int, Outcome]):
     """
 
     def __init__(self, outcomes: Mapping[int, Outcome] | None = None) -> None:
-        self._blocks: list[Block] = []
+        self._blocks: list[OutcomeBlock] = []
         self._singles: dict[int, Outcome] = {}
         self._place = np.full(64, NONE, dtype=np.int32)
         self._count = 0
@@ -103,7 +103,7 @@ class OutcomeTable(Mapping[int, Outcome]):
             self._mark(np.array([number]), SINGLE)
             self._singles[number] = outcome
 
-    def add(self, block: Block) -> None:
+    def add(self, block: OutcomeBlock) -> None:
         """Add a block of variants without outcomes."""
         self._blocks.append(block)
         self._mark(block.numbers, len(self._blocks) - 1)

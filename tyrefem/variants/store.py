@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 import json
 import math
 import os
@@ -15,12 +14,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from tyrefem.errors import InputError, ResultWarning
 from tyrefem.interruption import interruption_delayed
 from tyrefem.output import begin_writing, end_writing, jsonable
-from tyrefem.variants.blocks import Block, Numbers, PackedOutcomes
+from tyrefem.variants.block_lines import HEAD, HEAD_OF_BLOCK, BlockInFile, block_line, numbers_of
+from tyrefem.variants.blocks import OutcomeBlock, PackedOutcomes
 from tyrefem.variants.outcome_table import OutcomeTable
 from tyrefem.variants.outcomes import Outcome, outcome_of
 
@@ -28,16 +26,8 @@ from tyrefem.variants.outcomes import Outcome, outcome_of
 NAME = "variants.jsonl"
 #: Single outcomes of a resumed file are packed in memory when they are so many.
 TOGETHER = 4096
-#: Bytes of a line that are read first: the head of a block with successive numbers is shorter.
-HEAD = 160
-#: Head of a block: its length in bytes, so that its content need not be read; `Store` has the whole line.
-_HEAD = re.compile(
-    rb'\{"bytes": +(\d+), "variants": "([-,0-9]+)", "by": "(full|reduced)", "names": (\d+), "columns": "'
-)
 #: New blocks within the first so many bytes of the file stay in memory, too.
 HELD = 2**25
-#: Width of the length in a head.
-WIDTH = 9
 
 
 @dataclass(eq=False)
@@ -50,8 +40,8 @@ class Store:
     - ``{"plan": digest}``, first: the plan.
     - ``{"names": [answer, ...], "texts": [...]}``: names of answers, and which are texts; blocks refer to these lines
       by their number.
-    - ``{"bytes": length, "variants": "0-63", "by": ..., "names": number, "columns": base64}``: a `Block`. When the file
-      is opened, only its head is read.
+    - ``{"bytes": length, "variants": "0-63", "by": ..., "names": number, "columns": base64}``: an
+      `OutcomeBlock`. When the file is opened, only its head is read.
     - ``{"variant": name, "answers": {...}}`` or ``{"variant": name, "failure": "..."}``: a single outcome.
     - ``{"note": name, "value": ...}``: a value that belongs to all variants.
 
@@ -139,7 +129,7 @@ class Store:
         if not start.startswith(b'{"bytes"'):
             return None
         # A head with many separate numbers is longer.
-        return _HEAD.match(start) or _HEAD.match(start + file.readline())
+        return HEAD_OF_BLOCK.match(start) or HEAD_OF_BLOCK.match(start + file.readline())
 
     def _unreadable(self) -> InputError:
         if not self._end:
@@ -157,11 +147,13 @@ class Store:
             return 0
         if last != b"\n":
             raise ValueError("another length")
-        numbers = _numbers(head[2].decode())
+        numbers = numbers_of(head[2].decode())
         if len(self.outcomes.without(numbers)) == len(numbers):
             names, texts = list(self._names)[int(head[4])]
             by: Any = head[3].decode()
-            self.outcomes.add(Block(numbers, names, texts, by, Content(self.path, start + head.end(), start + length)))
+            self.outcomes.add(
+                OutcomeBlock(numbers, names, texts, by, BlockInFile(self.path, start + head.end(), start + length))
+            )
         return length
 
     def _read_single(self, file: Any, singles: dict[int, Outcome]) -> int:
@@ -204,7 +196,7 @@ class Store:
 
     def _add(self, new: PackedOutcomes) -> None:
         lines: list[bytes] = []
-        stored: list[tuple[Block, int, int]] = []
+        stored: list[tuple[OutcomeBlock, int, int]] = []
         place = self._end
         for block in new.blocks:
             names = block.names, block.texts
@@ -212,17 +204,17 @@ class Store:
                 self._names[names] = len(self._names)
                 lines.append(_line({"names": list(block.names), "texts": list(block.texts)}))
                 place += len(lines[-1])
-            line, begin = _block_line(block, self._names[names])
+            line, begin = block_line(block, self._names[names])
             stored.append((block, place + begin, place + len(line)))
             lines.append(line)
             place += len(line)
         lines += [_line({"variant": number, **outcome.entry}) for number, outcome in new.singles.items()]
         self._write(b"".join(lines))
         for block, begin, end in stored:
-            content = block.content if end < HELD else Content(self.path, begin, end)
+            content = block.content if end < HELD else BlockInFile(self.path, begin, end)
             # The names of all such blocks are the same object.
             shared = list(self._names)[self._names[block.names, block.texts]]
-            self.outcomes.add(Block(block.numbers, *shared, block.by, content))
+            self.outcomes.add(OutcomeBlock(block.numbers, *shared, block.by, content))
         self.outcomes.update(new.singles)
 
     def add_by_name(self, outcomes: Mapping[str, Outcome]) -> None:
@@ -263,61 +255,8 @@ class Store:
         self.close()
 
 
-@dataclass(frozen=True)
-class Content:
-    """Content of a block in a file: from the byte ``begin`` to its line's end at ``end``.
-
-    Raises
-    ------
-    InputError : the file is gone. ValueError : it is damaged there.
-    """
-
-    path: Path
-    begin: int
-    end: int
-
-    def __call__(self) -> bytes:
-        try:
-            with open(self.path, "rb") as file:
-                file.seek(self.begin)
-                text = file.read(self.end - self.begin)
-            return base64.b64decode(text.removesuffix(b'"}\n'), validate=True)
-        except OSError as error:
-            raise InputError(f"cannot be read: {error.strerror or error}", file=self.path) from None
-
-
 def _line(entry: Mapping[str, Any]) -> bytes:
     return (json.dumps(jsonable(entry)) + "\n").encode()
-
-
-def _block_line(block: Block, names: int) -> tuple[bytes, int]:
-    """The line of a block, and the place in it where the content begins."""
-    content = block.content if isinstance(block.content, bytes) else block.content()
-    variants = _ranges(block.numbers)
-    rest = f', "variants": "{variants}", "by": "{block.by}", "names": {names}, "columns": "'.encode()
-    begin = len('{"bytes": ') + WIDTH + len(rest)
-    text = base64.b64encode(content) + b'"}\n'
-    return f'{{"bytes": {begin + len(text):{WIDTH}d}'.encode() + rest + text, begin
-
-
-def _ranges(numbers: Numbers) -> str:
-    """Increasing numbers as text.
-
-    >>> _ranges(np.array([0, 1, 2, 7, 9, 10]))
-    '0-2,7,9-10'
-    """
-    parts = np.split(numbers, np.flatnonzero(np.diff(numbers) > 1) + 1)
-    return ",".join(str(part[0]) if len(part) == 1 else f"{part[0]}-{part[-1]}" for part in parts)
-
-
-def _numbers(ranges: str) -> Numbers:
-    """The numbers of a text of `_ranges`.
-
-    >>> _numbers("0-2,7").tolist()
-    [0, 1, 2, 7]
-    """
-    ends = [part.split("-") for part in ranges.split(",")]
-    return np.concatenate([np.arange(int(part[0]), int(part[-1]) + 1, dtype=np.intp) for part in ends])
 
 
 def _shared(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
