@@ -71,7 +71,7 @@ def _responses(answer: Responses) -> Iterator[tuple[str, str, Figure]]:
         for x, y in itertools.combinations(order[:MOST_MAPS], 2):
             yield _file("map", name, x, y), f"{name_of(name)} over {x} and {y}{mean}", response_map(swept, x, y, name)
         for x in order[:MOST_CURVES]:
-            yield _file("curves", name, x), f"{name_of(name)} over {x}", curves(swept, x, name)
+            yield _file("curves", name, x), f"{name_of(name)} over {x}{_shades(swept)}", curves(swept, x, name)
         cards = [varied.heading for varied in swept.plan.varied if varied.heading not in axes]
         for card in cards if not axes else []:
             yield _file("bars", name, card), f"{name_of(name)} by {card}", curves(swept, card, name)
@@ -83,8 +83,13 @@ def _pareto(answer: ParetoFront) -> Iterator[tuple[str, str, Figure]]:
     aims = [name for name in answer.chosen if name in answer.swept.overview(tuple(answer.chosen))]
     for y, x in itertools.combinations(aims, 2):
         if len(answer.table):
-            caption = f"{name_of(y)} against {name_of(x)}; the front considers all objectives"
+            caption = f"{name_of(y)} against {name_of(x)}; the front considers all objectives{_shades(answer.swept)}"
             yield f"pareto-{y}-{x}", caption, pareto(answer.swept, answer.table, x, y)
+
+
+def _shades(sweep: Sweep) -> str:
+    """Words for a caption about hexagons."""
+    return "; darker hexagons: more variants" if len(finished(sweep)) > MOST_POINTS else ""
 
 
 def _file(*parts: str) -> str:
