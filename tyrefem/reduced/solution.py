@@ -64,8 +64,15 @@ class Window:
 
     def slopes(self, part: Array) -> Array:
         """Rates dy/dt, (B, n, k) K/s."""
-        heat = self.heat @ np.vander(part, self.heat.shape[2], increasing=True).T
-        return self.back @ (heat - self.decay[:, :, None] * self._modes(part, integral=False)[0])
+        return self.states_and_slopes(part)[:, self.back.shape[1] :]
+
+    def states_and_slopes(self, part: Array) -> Array:
+        """States, then their rates, (B, 2 n, k)."""
+        z = self._modes(part, integral=False)[0]
+        rates = self.heat @ np.vander(part, self.heat.shape[2], increasing=True).T
+        rates -= self.decay[:, :, None] * z
+        y = self.back @ np.concatenate([z, rates], axis=2)
+        return np.concatenate([y[:, :, : len(part)], y[:, :, len(part) :]], axis=1)
 
     def energies(self, part: Array, batch: Batch) -> Array:
         """Energies since the window's start, (B, n_entries, k) J."""
@@ -122,6 +129,17 @@ class BatchSolution:
         """Rates of the states, (n_times, B, n) 1/s."""
         return self._by_window(times, lambda number, part: self.windows[number].slopes(part))
 
+    def states_and_slopes(self, times: Array) -> tuple[Array, Array]:
+        """States and their rates at increasing times, (n_times, B, n) each."""
+        both = self._by_window(times, lambda number, part: self.windows[number].states_and_slopes(part))
+        n = self.last.shape[1]
+        return both[:, :, :n], both[:, :, n:]
+
+    def window_at(self, time: float) -> Window:
+        """The window of a time; the end of a window belongs to that window."""
+        starts = np.array([each.time for each in self.windows])
+        return self.windows[max(int(np.searchsorted(starts, time - 1e-9, side="right")) - 1, 0)]
+
     def energies(self, times: Array) -> Array:
         """Energies from the start, (n_times, B, n_entries) J."""
         before = self._energies
@@ -133,8 +151,7 @@ class BatchSolution:
 
     def powers(self, time: float, states: Array) -> Array:
         """Heat flows at a time with states (B, n), (B, n_entries) W; the end of a phase belongs to that phase."""
-        starts = np.array([each.time for each in self.windows])
-        window = self.windows[max(int(np.searchsorted(starts, time - 1e-9, side="right")) - 1, 0)]
+        window = self.window_at(time)
         low, high = window.inside
         t = min(max(time, low), high)
         batch = self.batch
