@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from tyrefem.errors import InputError
@@ -29,13 +29,14 @@ TIME_TOLERANCE = 0.2
 
 def reduced_answers(model: ReducedModel, studies: Sequence[StudyData], time_to: float | None) -> list[ReducedOutcome]:
     """The outcome of every study, in the order of the studies."""
-    outcomes: dict[int, ReducedOutcome] = {}
-    for number, outcome in reduced_outcomes(model, studies):
-        if isinstance(outcome, Variant):
-            outcomes[number] = Answered(answers(outcome, time_to), "reduced", outcome.estimated_error)
-        else:
-            outcomes[number] = outcome
+    outcomes = {number: _outcome(outcome, time_to) for number, outcome in reduced_outcomes(model, studies)}
     return [outcomes[number] for number in range(len(studies))]
+
+
+def _outcome(variant: Variant | Failed | NotReducible, time_to: float | None) -> ReducedOutcome:
+    if not isinstance(variant, Variant):
+        return variant
+    return Answered(answers(variant, time_to, variant.input_answers), "reduced", variant.estimated_error)
 
 
 def reduced_outcomes(
@@ -54,11 +55,29 @@ def outcomes_of(
     model: ReducedModel, tyres: Sequence[RollingTyre], tolerance: float = TIME_TOLERANCE
 ) -> Iterator[tuple[int, Variant | Failed | NotReducible]]:
     """Yield (number, variant) of every tyre on the model's mesh, as `reduced_outcomes`."""
-    for numbers, part in batch_solutions(model, tyres, tolerance):
+    yield from _variants(batch_solutions(model, tyres, tolerance))
+
+
+def learnt_outcomes(
+    model: ReducedModel, changes: Sequence[Mapping[str, Any]], time_to: float | None
+) -> list[ReducedOutcome] | None:
+    """The outcome of every variant, given by its changes, with learnt inputs; None: these do not hold for them all."""
+    balances = None if model.inputs is None else model.inputs.balances(model, changes)
+    if balances is None:
+        return None
+    solutions = balance_solutions(model, list(enumerate(balances)), TIME_TOLERANCE, BATCH_SIZE)
+    outcomes = {number: _outcome(outcome, time_to) for number, outcome in _variants(solutions)}
+    return [outcomes[number] for number in range(len(changes))]
+
+
+def _variants(
+    solutions: Iterator[tuple[list[int], BatchSolution | Failed | NotReducible]],
+) -> Iterator[tuple[int, Variant | Failed | NotReducible]]:
+    for numbers, part in solutions:
         if isinstance(part, Failed | NotReducible):
             yield numbers[0], part
             continue
-        readout = Readout(part, output_times(part.batch.balances[0].tyre)[0])
+        readout = Readout(part, output_times(part.batch.balances[0].alike)[0])
         for place, number in enumerate(numbers):
             yield number, Variant(readout, place)
 
@@ -71,7 +90,7 @@ def batch_solutions(
     A tyre that cannot be built gives ([number], `Failed`). A tyre that the model cannot represent gives ([number],
     `NotReducible`).
     """
-    groups: dict[Any, list[tuple[int, ReducedBalance]]] = {}
+    balances: list[tuple[int, ReducedBalance]] = []
     for number, tyre in enumerate(tyres):
         try:
             balance = reduced_balance(model, tyre)
@@ -80,9 +99,20 @@ def batch_solutions(
         except InputError as error:
             yield [number], Failed(str(error))
         else:
-            output = tyre.study.card.output
-            key = tyre.drive.starts, tyre.drive.end, tyre.schedule.knots, balance.layout, output.every, output.fields
-            groups.setdefault(key, []).append((number, balance))
+            balances.append((number, balance))
+    yield from balance_solutions(model, balances, tolerance, most)
+
+
+def balance_solutions(
+    model: ReducedModel, balances: Sequence[tuple[int, ReducedBalance]], tolerance: float, most: int
+) -> Iterator[tuple[list[int], BatchSolution]]:
+    """Yield (numbers, solution) of batches of at most ``most`` numbered balances whose drives have the same times."""
+    groups: dict[Any, list[tuple[int, ReducedBalance]]] = {}
+    for number, balance in balances:
+        tyre = balance.alike
+        output = tyre.study.card.output
+        key = tyre.drive.starts, tyre.drive.end, tyre.schedule.knots, balance.layout, output.every, output.fields
+        groups.setdefault(key, []).append((number, balance))
     for members in groups.values():
         for first in range(0, len(members), most):
             part = members[first : first + most]

@@ -15,6 +15,7 @@ from tyrefem.geometry.meshing.topology import OtherTopologyError
 from tyrefem.reduced.exchanges import Exchanges, Layout
 from tyrefem.reduced.model import NotReducibleError, ReducedModel
 from tyrefem.reduced.shaped_model import on_tyre
+from tyrefem.simulation.rolling_resistance import RollingPhase
 from tyrefem.simulation.rolling_tyre import RollingTyre
 
 Array = NDArray[np.float64]
@@ -22,6 +23,9 @@ Array = NDArray[np.float64]
 
 class ReducedBalance:
     """M y' = A(t) y + b(t) + sources, with y = (mode amplitudes a, reservoir temperatures)."""
+
+    #: Inputs that are known without the tyre, by name; see `reduced.learnt_inputs`.
+    known: Mapping[str, Array] | None = None
 
     def __init__(
         self,
@@ -31,7 +35,8 @@ class ReducedBalance:
         films: Sequence[tuple[str, int, Film]],
         reservoirs: Mapping[str, Reservoir],
     ) -> None:
-        self.model, self.tyre, self.bodies, self.films, self.reservoirs = model, tyre, bodies, films, reservoirs
+        self.model, self.bodies, self.films, self.reservoirs = model, bodies, films, reservoirs
+        self._made: RollingTyre | None = tyre
         m, names = model.size, list(reservoirs)
         n = m + len(names)
         conductances = [(name, pair) for name in names for pair in reservoirs[name].exchanges]
@@ -50,6 +55,36 @@ class ReducedBalance:
         for i, name in enumerate(names):
             initial_of = reservoirs[name].initial
             self.start[m + i] = initial if initial_of is None else initial_of
+
+    @property
+    def tyre(self) -> RollingTyre:
+        """The variant's tyre."""
+        assert self._made is not None
+        return self._made
+
+    @property
+    def alike(self) -> RollingTyre:
+        """A tyre with the same phases, load-case times, zones, section and sensors: here the tyre itself."""
+        return self.tyre
+
+    @property
+    def rolling(self) -> Sequence[RollingPhase] | None:
+        """The phases in which the tyre rolls; None: the tyre knows."""
+        return None
+
+    @property
+    def answers(self) -> Mapping[str, Mapping[str, float]]:
+        """Function of answers -> its answers, where they are known without the tyre."""
+        return {}
+
+    def pressure(self, t: float) -> float:
+        """Gauge pressure of the drive at a time, Pa."""
+        return float(self.tyre.drive.value("pressure", t) or 0.0)
+
+    @property
+    def fixed_gas(self) -> float:
+        """Temperature of contained air that is not a reservoir, degC."""
+        return float(self.tyre.study.card.boundaries.contained_air.fixed_temperature)
 
     def on(self, model: ReducedModel) -> ReducedBalance:
         """The same balance on other modes."""

@@ -85,4 +85,4 @@ class Batch:
 
 def steady(balance: ReducedBalance, number: int) -> bool:
     """Are the boundary data constant within a phase?"""
-    return balance.tyre.is_steady(number)
+    return balance.alike.is_steady(number)

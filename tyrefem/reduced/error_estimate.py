@@ -39,7 +39,7 @@ def estimated_errors(solution: BatchSolution) -> Array | None:
     batch = solution.batch
     if batch.model.further is None:
         return None
-    drive, largest = batch.balances[0].tyre.drive, np.zeros(len(batch.balances))
+    drive, largest = batch.balances[0].alike.drive, np.zeros(len(batch.balances))
     residual, places = _Residual(solution), None
     for number, (start, end) in enumerate(pairwise([*drive.starts, drive.end])):
         times = start + PARTS * (end - start) * (1 - 1e-9)
@@ -82,9 +82,7 @@ class _Residual:
         def of_bodies(matrices: Array) -> Array:
             # Reservoirs have no capacity or conduction in common with F.
             part = matrices[..., m:, body]
-            return np.concatenate(
-                [part[..., :m], np.zeros((*part.shape[:-1], n - m)), part[..., m:]], axis=-1
-            )
+            return np.concatenate([part[..., :m], np.zeros((*part.shape[:-1], n - m)), part[..., m:]], axis=-1)
 
         masses = by_shape(self.enriched, lambda balance: of_bodies(balance.model.stacked[0]))
         conduction = by_shape(self.enriched, lambda balance: of_bodies(balance.model.stacked[1]))
@@ -140,10 +138,10 @@ def _combined(coefficients: Array, matrices: Array) -> Array:
 
 def _rows(balance: ReducedBalance) -> Array:
     """Rows of the modes at the sensors and at the nodes that were nearly the hottest in training."""
-    model, study = balance.model, balance.tyre.study
+    model, study = balance.model, balance.alike.study
     hot = np.vstack(list(model.hot_rows.values()))
     places = np.array(list(true_places(study).values()))
     if not len(places):
         return hot
-    inside = inside_mesh(study.section, balance.tyre.mesh.size, *study.section.locate(places))
+    inside = inside_mesh(study.section, balance.alike.mesh.size, *study.section.locate(places))
     return np.vstack([model.rows(inside), hot])

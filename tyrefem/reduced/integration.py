@@ -33,9 +33,9 @@ def integrate(batch: Batch) -> BatchSolution:
     ------
     InputError : the time windows become too short.
     """
-    drive, y = batch.balances[0].tyre.drive, np.stack([each.start for each in batch.balances])
+    drive, y = batch.balances[0].alike.drive, np.stack([each.start for each in batch.balances])
     windows: list[Window] = []
-    knots = batch.balances[0].tyre.schedule.knots
+    knots = batch.balances[0].alike.schedule.knots
     for number, (start, end) in enumerate(pairwise([*drive.starts, drive.end])):
         # Between load cases the heat is linear in time: a window must end at each of them.
         kinks = [start + (end - start) * share for share in knots[number] if 0 < share < 1]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +22,9 @@ from tyrefem.reduced.learnt_cycles import LearntCycles
 from tyrefem.reduced.pod import CANDIDATE_NODES
 from tyrefem.reduced.shape_operators import ShapeGeometry, ShapeOperators
 from tyrefem.simulation.rolling_tyre import RollingTyre
+
+if TYPE_CHECKING:
+    from tyrefem.reduced.learnt_inputs import LearntInputs
 
 Array = NDArray[np.float64]
 
@@ -56,6 +59,8 @@ class ReducedModel(Brief):
     further: Array | None = None
     #: Strain cycles of the variants, learnt from presses; None: every variant's strain law computes them.
     cycles: LearntCycles | None = None
+    #: Inputs of the variants of a box; None: every variant is made as a study.
+    inputs: LearntInputs | None = None
 
     def _title(self) -> str:
         return f"of {self.base.study.name}"

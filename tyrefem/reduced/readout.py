@@ -14,11 +14,14 @@ from numpy.typing import NDArray
 from tyrefem.cache import Cache, Content
 from tyrefem.conduction.budget import Budget
 from tyrefem.conduction.field import Peak
+from tyrefem.geometry.wall import inside_mesh
 from tyrefem.reduced.budget import end_budgets
 from tyrefem.reduced.error_estimate import estimated_errors
 from tyrefem.reduced.solution import NODES, BatchSolution
 from tyrefem.simulation.heat_budget import HeatBudget, whole_tyre
 from tyrefem.simulation.rolling_resistance import just_before
+from tyrefem.simulation.rolling_tyre import RollingTyre
+from tyrefem.simulation.sensors import recorded, true_places
 
 Array = NDArray[np.float64]
 #: K: well above the error of single precision.
@@ -60,6 +63,29 @@ class Readout:
             return np.asarray(self.modes[:, variant] @ models[variant].rows(points).T)
         fields: Array = self._fields.get(Content.of(points), lambda: np.asarray(self.modes @ models[0].rows(points).T))
         return fields[:, variant]
+
+    def recorded(self, variant: int) -> dict[str, Array]:
+        """Sensor -> recorded temperature of a variant, (n_times,) degC."""
+        balance = self.solution.batch.balances[variant]
+        tyre = balance.alike
+        study = tyre.study
+        places = true_places(study)
+        if not places:
+            return {}
+        section, stated = study.section, tuple(places.values())
+        built_in = balance.model.sensor_places.get(
+            (section, stated), lambda: inside_mesh(section, tyre.mesh.size, *section.locate(np.array(stated)))
+        )
+        if balance.known is None:
+            return recorded(study, self.times, self.at(built_in, variant))
+
+        def together() -> dict[str, Array]:
+            # (n_times, n_sensors, B)
+            return recorded(study, self.times, (self.modes @ balance.model.rows(built_in).T).transpose(0, 2, 1))
+
+        # Variants with learnt inputs have the same sensors.
+        of_all: dict[str, Array] = self._heats.get("recorded", together)
+        return {name: series[:, variant] for name, series in of_all.items()}
 
     @functools.cached_property
     def _fields(self) -> Cache[Array]:
@@ -206,13 +232,34 @@ class Readout:
             self.solution.batch.balances, self.states[-1], self.end_slopes[0], self.powers(last), self.solution.energy
         )
 
-    def end_budget(self, names: tuple[Any, bool, Any]) -> HeatBudget:
-        """The whole tyre's heat budget at the end; ``names``: zone titles, half section or not, added conditions."""
-        titles, half, added = names
-        budget: HeatBudget = self._heats.get(
-            ("end budget", names), lambda: whole_tyre(self.end_budgets, dict(titles), half, dict(added))
+    def end_budget(self, variant: int) -> HeatBudget:
+        """The whole tyre's heat budget of a variant at the end."""
+        alike = self.solution.batch.balances[variant].alike
+        written = self._heats.get(("budget names", id(alike)), lambda: _budget_names(alike))
+        names, energies, powers, residual, imbalance = self._heats.get(
+            ("end budget", written), lambda: self._end_budget(*written)
         )
-        return budget
+        return HeatBudget(
+            self.times[-1:],
+            dict(zip(names[0], energies[variant], strict=True)),
+            dict(zip(names[1], powers[variant], strict=True)),
+            residual[variant],
+            float(imbalance[variant]),
+        )
+
+    def _end_budget(
+        self, titles: tuple[Any, ...], half: bool, added: tuple[Any, ...]
+    ) -> tuple[tuple[list[Any], list[Any]], Array, Array, Array, Array]:
+        """Names of energies and powers, their values (B, n, 1), residuals (B, 1) and imbalances (B,)."""
+        section = self.end_budgets
+        budget = whole_tyre(section, dict(titles), half, dict(added))
+        energies, powers = (
+            np.stack(list(each.values()), axis=1)[:, :, None] for each in (budget.energies, budget.powers)
+        )
+        worst = np.abs([section.residual, *section.reservoir_residual.values()]).max(axis=0)
+        imbalance = worst / np.where(section.throughput > 0, section.throughput, 1.0)
+        names = list(budget.energies), list(budget.powers)
+        return names, energies, powers, np.asarray(budget.residual)[:, None], imbalance
 
     @functools.cached_property
     def end_slopes(self) -> Array:
@@ -239,6 +286,12 @@ def _between(
     times = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts) + np.repeat(first, counts)
     pairs = np.unique(variants * (int(last.max()) + 1) + times)
     return pairs // (int(last.max()) + 1), pairs % (int(last.max()) + 1)
+
+
+def _budget_names(tyre: RollingTyre) -> tuple[tuple[Any, ...], bool, tuple[Any, ...]]:
+    """Zone titles, half section or not, added conditions."""
+    titles = {zone.name: zone.title for zone in tyre.schedule.zones}
+    return tuple(titles.items()), tyre.study.section.half, tuple(tyre.condition_names.items())
 
 
 def _with_tyre(peaks: dict[str, Peak]) -> dict[str, Peak]:

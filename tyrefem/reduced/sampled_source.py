@@ -14,11 +14,14 @@ from tyrefem.reduced.learnt_cycles import NodeEnergies
 Array = NDArray[np.float64]
 #: Range of the table of tan delta, degC, and its spacing, K.
 COLD, HOT, FINE = -60.0, 400.0, 0.25
+LOSS_GRID = np.arange(COLD, HOT + FINE / 2, FINE)
 
 
 def has_tabulated_loss(balance: ReducedBalance) -> bool:
     """Is tan delta independent of frequency in all zones?"""
-    return all(source.over_frequency is None for source in balance.tyre.hysteresis.values())
+    return balance.known is not None or all(
+        source.over_frequency is None for source in balance.tyre.hysteresis.values()
+    )
 
 
 class SampledHeat:
@@ -34,7 +37,9 @@ class SampledHeat:
         self.others = [row for row in range(len(balances)) if row not in self.rows]
         tabulated = [balances[row] for row in self.rows]
         self.tabulated = TabulatedHeat(tabulated) if tabulated else None
-        changes = ((place, HeatChange(balance)) for place, balance in enumerate(tabulated))
+        # Learnt inputs are those of variants whose heat no effect changes.
+        studied = ((place, balance) for place, balance in enumerate(tabulated) if balance.known is None)
+        changes = ((place, HeatChange(balance)) for place, balance in studied)
         self.changes = [(place, change) for place, change in changes if change.acts]
 
     def __call__(self, times: Sequence[float], a: Array) -> Array:
@@ -61,16 +66,18 @@ class TabulatedHeat:
 
     def __init__(self, balances: Sequence[ReducedBalance]) -> None:
         self.balances, self.model = balances, balances[0].model
-        grid = np.arange(COLD, HOT + FINE / 2, FINE)
-        self.width = len(grid)
+        self.width = len(LOSS_GRID)
         zones = self.model.zones
         tables = np.zeros((len(balances), len(zones), self.width))
         kept: dict[int, Array] = {}
         for table, each in zip(tables, balances, strict=True):
             for row, zone in zip(table, zones, strict=True):
+                if each.known is not None:
+                    row[:] = each.known[f"loss {zone}"]
+                    continue
                 law = each.tyre.hysteresis[zone].loss_tangent
                 if id(law) not in kept:
-                    kept[id(law)] = law(grid)
+                    kept[id(law)] = law(LOSS_GRID)
                 row[:] = kept[id(law)]
         self.table = tables.reshape(-1)
         sizes = [part.stop - part.start for part in self.model.sample_slices.values()]
@@ -103,11 +110,11 @@ class TabulatedHeat:
 
         None: all tyres stand still.
         """
-        drive, schedule = self.balances[0].tyre.drive, self.balances[0].tyre.schedule
+        drive, schedule = self.balances[0].alike.drive, self.balances[0].alike.schedule
         phase, _ = drive.locate(times[0])
         if self._phase_number != phase:
             self._phase_number = phase
-            self._energies = np.array([_energies(balance, phase) for balance in self.balances])
+            self._energies = np.array([sampled_energies(balance, phase) for balance in self.balances])
             same = all(_same_speed(balance, phase) for balance in self.balances)
             self._steady = same and self._energies.shape[1] == 1
             self._losses_by_times: dict[tuple[float, ...], Array] = {}
@@ -117,9 +124,7 @@ class TabulatedHeat:
         if key not in self._losses_by_times:
             if len(self._losses_by_times) > 4:
                 self._losses_by_times.clear()
-            rates = np.array(
-                [[balance.tyre.motion(t).revolutions_per_second for t in times] for balance in self.balances]
-            )
+            rates = np.array([_rates(balance, phase, times) for balance in self.balances])
             shares = np.zeros((self._energies.shape[1], len(times)))
             for column, t in enumerate(times):
                 for _, knot, weight in schedule.weights(t):
@@ -130,11 +135,20 @@ class TabulatedHeat:
 
 
 def _same_speed(balance: ReducedBalance, phase: int) -> bool:
-    return balance.tyre.drive.phases[phase].steady_motion
+    return balance.alike.drive.phases[phase].steady_motion
 
 
-def _energies(balance: ReducedBalance, phase: int) -> Array:
+def _rates(balance: ReducedBalance, phase: int, times: Sequence[float]) -> list[float]:
+    """Revolutions per second at times of a phase."""
+    if balance.known is not None:
+        return [float(balance.known[f"rate {phase}"])] * len(times)
+    return [balance.tyre.motion(t).revolutions_per_second for t in times]
+
+
+def sampled_energies(balance: ReducedBalance, phase: int) -> Array:
     """Energy lost per revolution and unit of tan delta, (n_knots, n_samples) J/m3."""
+    if balance.known is not None:
+        return balance.known[f"energies {phase}"]
     tyre, model = balance.tyre, balance.model
     energies = np.zeros((len(tyre.schedule.knots[phase]), model.at_samples.shape[0]))
     if tyre.drive.phases[phase].stands:

@@ -17,9 +17,10 @@ from numpy.typing import NDArray
 from tyrefem.cache import Cache
 from tyrefem.errors import InputError
 from tyrefem.geometry.meshing.mapped import Counts
-from tyrefem.reduced.answers import ReducedOutcome, batch_solutions, reduced_answers
+from tyrefem.reduced.answers import ReducedOutcome, batch_solutions, learnt_outcomes, reduced_answers
 from tyrefem.reduced.error_estimate import estimated_errors
 from tyrefem.reduced.learnt_cycles import LearntCycles, Press, learnt, mechanical_numbers, press_count, press_of
+from tyrefem.reduced.learnt_inputs import LearntInputs
 from tyrefem.reduced.model import NotReducibleError, ReducedModel
 from tyrefem.reduced.residual import TIME_TOLERANCE as CORRECTION_TOLERANCE
 from tyrefem.reduced.residual import correction
@@ -46,6 +47,7 @@ class PackedModel:
     ----------
     base : the study that it was made for. V, samples, nodes_from_samples, hot, shapes, further, cycles : as in
         `ReducedModel`.
+    inputs : as in `ReducedModel`.
     counts : rows and gaps of the mesh that all shapes of the section share; None: the section does not vary.
     """
 
@@ -58,11 +60,13 @@ class PackedModel:
     shapes: ShapeOperators | None = None
     further: Array | None = None
     cycles: LearntCycles | None = None
+    inputs: LearntInputs | None = None
 
     @functools.cached_property
     def digest(self) -> str:
         """Digest of the study and the modes."""
-        text = f"{self.base.digest} {self.counts} {self.shapes is None} {self.further is None} {self.cycles is None}"
+        parts = (self.shapes, self.further, self.cycles, self.inputs)
+        text = f"{self.base.digest} {self.counts} {' '.join(str(part is None) for part in parts)}"
         return hashlib.sha256(text.encode() + self.V.tobytes()).hexdigest()[:16]
 
     def unpacked(self) -> ReducedModel:
@@ -78,6 +82,7 @@ class PackedModel:
                 self.shapes,
                 self.further,
                 self.cycles,
+                self.inputs,
             ),
         )
 
@@ -99,7 +104,7 @@ def _counts(base: RollingTyre) -> Counts | None:
 def pack(model: ReducedModel, base: Bundle) -> PackedModel:
     """A model packed for other processes; ``base``: the study that it was made for."""
     arrays = (model.V, model.samples, model.nodes_from_samples, model.hot)
-    return PackedModel(base, *arrays, _counts(model.base), model.shapes, model.further, model.cycles)
+    return PackedModel(base, *arrays, _counts(model.base), model.shapes, model.further, model.cycles, model.inputs)
 
 
 #: Models and tyres that a process keeps: two sweeps may run on threads of one worker.
@@ -119,6 +124,9 @@ class ReducedTask:
 def perform_reduced(task: ReducedTask, packed: PackedModel) -> tuple[ReducedOutcome, ...]:
     """Run in a worker: the outcome of every variant, in the order of the task."""
     model = packed.unpacked()
+    learnt = learnt_outcomes(model, task.changes, task.time_to)
+    if learnt is not None:
+        return tuple(learnt)
     outcomes: dict[int, ReducedOutcome] = {}
     studies, places = [], []
     for place, changes in enumerate(task.changes):

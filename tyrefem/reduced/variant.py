@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -10,15 +11,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from tyrefem.conduction.field import Peak
-from tyrefem.geometry.wall import inside_mesh
 from tyrefem.inputs.study import StudyData
+from tyrefem.reduced.balance import ReducedBalance
 from tyrefem.reduced.model import ReducedModel
 from tyrefem.reduced.readout import Readout
 from tyrefem.simulation.heat_budget import HeatBudget
-from tyrefem.simulation.result import ResultData
+from tyrefem.simulation.result import ResultData, warmed
 from tyrefem.simulation.rolling_resistance import RollingResistance, rolling_resistance
 from tyrefem.simulation.rolling_tyre import RollingTyre
-from tyrefem.simulation.sensors import recorded, true_places
 from tyrefem.simulation.simulate import output_times
 from tyrefem.simulation.surroundings import GAS, RIM
 
@@ -45,7 +45,21 @@ class Variant:
     @property
     def tyre(self) -> RollingTyre:
         """The rolling tyre: drive, load cases and materials."""
-        return self.readout.solution.batch.balances[self.number].tyre
+        return self._balance.tyre
+
+    @property
+    def _balance(self) -> ReducedBalance:
+        return self.readout.solution.batch.balances[self.number]
+
+    @property
+    def _alike(self) -> RollingTyre:
+        """A tyre with the same phases, zones, section and sensors, which need not be made for this variant."""
+        return self._balance.alike
+
+    @property
+    def input_answers(self) -> Mapping[str, Mapping[str, float]]:
+        """Function -> its answers, of those that are known without making the tyre."""
+        return self._balance.answers
 
     @property
     def _model(self) -> ReducedModel:
@@ -87,10 +101,11 @@ class Variant:
         """(s, depth) of a peak, m."""
 
         def located() -> tuple[float, float]:
-            s, depth = self.study.section.locate(np.array([peak.point]))
+            s, depth = section.locate(np.array([peak.point]))
             return float(s[0]), float(depth[0])
 
-        return self._model.node_places.get((self.study.section, peak.point), located)
+        section = self._alike.study.section
+        return self._model.node_places.get((section, peak.point), located)
 
     def at(self, points: ArrayLike) -> Array:
         """Temperatures at points (n, 2) in (r, z), m: (n_times, n), degC."""
@@ -99,14 +114,7 @@ class Variant:
     @functools.cached_property
     def recorded(self) -> dict[str, Array]:
         """Sensor -> recorded temperature, (n_times,) degC."""
-        places = true_places(self.study)
-        if not places:
-            return {}
-        model, section, stated = self._model, self.study.section, tuple(places.values())
-        built_in = model.sensor_places.get(
-            (section, stated), lambda: inside_mesh(section, self.tyre.mesh.size, *section.locate(np.array(stated)))
-        )
-        return recorded(self.study, self.times, self.readout.at(built_in, self.number))
+        return self.readout.recorded(self.number)
 
     @property
     def gas_temperature(self) -> Array:
@@ -114,14 +122,16 @@ class Variant:
         history = self.readout.reservoirs(self.number).get(GAS)
         if history is not None:
             return history
-        return np.full(len(self.times), self.study.card.boundaries.contained_air.fixed_temperature)
+        return np.full(len(self.times), self._balance.fixed_gas)
 
     @property
     def rim_temperature(self) -> Array | None:
         """Temperature of a lumped rim, (n_times,) degC; None if the rim's temperature is given."""
         return self.readout.reservoirs(self.number).get(RIM)
 
-    pressure_at = ResultData.pressure_at
+    def pressure_at(self, i: int) -> float:
+        """Gauge pressure of the contained air at ``times[i]``, Pa."""
+        return warmed(self._balance.pressure(float(self.times[i])), self.gas_temperature, i)
 
     @functools.cached_property
     def readings(self) -> pd.DataFrame:
@@ -144,7 +154,7 @@ class Variant:
 
     @property
     def _sides(self) -> float:
-        return 2.0 if self.study.section.half else 1.0
+        return 2.0 if self._alike.study.section.half else 1.0
 
     def generated(self, i: int) -> tuple[float, float]:
         """Heat of hysteresis in the whole tyre until ``times[i]``, J, and its power at ``times[i]``, W."""
@@ -159,21 +169,9 @@ class Variant:
     @functools.cached_property
     def rolling_resistance(self) -> RollingResistance:
         """Rolling resistance of hysteresis: force, N, and coefficient."""
-        return rolling_resistance(self)
+        return rolling_resistance(self, self._balance.rolling)
 
     @functools.cached_property
     def end_budget(self) -> HeatBudget:
         """The heat budget of the whole tyre at the end."""
-        titles = {zone.name: zone.title for zone in self.tyre.schedule.zones}
-        key = tuple(titles.items()), self.study.section.half, tuple(self.tyre.condition_names.items())
-        together, of_variant = self.readout.end_budget(key), slice(self.number, self.number + 1)
-        energies, powers = (
-            {name: series[of_variant] for name, series in each.items()} for each in (together.energies, together.powers)
-        )
-        section = self.readout.end_budgets
-        worst = max(
-            abs(float(residual[self.number])) for residual in (section.residual, *section.reservoir_residual.values())
-        )
-        throughput = float(section.throughput[self.number])
-        imbalance = worst / throughput if throughput > 0 else worst
-        return HeatBudget(self.times[-1:], energies, powers, together.residual[of_variant], imbalance)
+        return self.readout.end_budget(self.number)

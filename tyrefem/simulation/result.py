@@ -204,9 +204,7 @@ class ResultData(Brief):
 
     def pressure_at(self, i: int) -> float:
         """Gauge pressure of the contained air at ``times[i]``, Pa."""
-        cold = self.study.card.drive.value("pressure", float(self.times[i])) or 0.0
-        start, now = self.gas_temperature[0] + KELVIN, self.gas_temperature[i] + KELVIN
-        return float((cold + ATMOSPHERE) * now / start - ATMOSPHERE)
+        return warmed(self.study.card.drive.value("pressure", float(self.times[i])) or 0.0, self.gas_temperature, i)
 
     @functools.cached_property
     def wall_gradient(self) -> tuple[Array, Array]:
@@ -381,3 +379,9 @@ def _again(
     """Make a result from its pickled data."""
     problem = tyre.problem
     return kind(study, tyre, History(problem.operators, problem.regions, **history), times, wall_time, feedback)
+
+
+def warmed(cold: float, gas: Array, i: int) -> float:
+    """Gauge pressure, Pa, of air inflated to ``cold`` (Pa) and then shut in, at reading i of its temperatures, degC."""
+    start, now = gas[0] + KELVIN, gas[i] + KELVIN
+    return float((cold + ATMOSPHERE) * now / start - ATMOSPHERE)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
@@ -55,36 +56,64 @@ class Rolled(Protocol):
         ...
 
 
+@dataclass(frozen=True)
+class RollingPhase:
+    """A phase in which a loaded tyre rolls: its start and end, s; speed over the road, m/s, and load, N, at its end."""
+
+    name: str
+    start: float
+    end: float
+    speed: float
+    load: float
+
+
+def rolling_phases(tyre: RollingTyre) -> tuple[RollingPhase, ...]:
+    """The phases of a tyre's drive in which it rolls under load, in order."""
+    phases, drive = [], tyre.drive
+    for start, phase in zip(drive.starts, drive.phases, strict=True):
+        end = start + phase.duration
+        t = end * (1 - 1e-12)
+        load = float(tyre.schedule.mean(lambda case: case.load, t))
+        motion = tyre.motion(t)
+        if not phase.stops and load > 0 and motion.rolling_speed > TURNS * motion.speed:
+            phases.append(RollingPhase(phase.name, start, end, motion.speed, load))
+    return tuple(phases)
+
+
 def rolling_reading(result: Rolled) -> int | None:
     """Index of the last reading of the rolling phase with most heat; None if the tyre never rolls."""
-    tyre = result.tyre
-    drive = tyre.drive
+    best = _most_heat(result, rolling_phases(result.tyre))
+    return None if best is None else best[0]
+
+
+def _most_heat(result: Rolled, phases: Sequence[RollingPhase]) -> tuple[int, RollingPhase] | None:
+    """The rolling phase with most heat, and its last reading."""
     best: tuple[float, int] | None = None
-    for start, phase in zip(drive.starts, drive.phases, strict=True):
-        t = (start + phase.duration) * (1 - 1e-12)
-        load = tyre.schedule.mean(lambda case: case.load, t)
-        if phase.stops or load <= 0 or start >= result.times[-1]:
+    phase_of: dict[int, RollingPhase] = {}
+    for phase in phases:
+        if phase.start >= result.times[-1]:
             continue
-        motion = tyre.motion(t)
-        if motion.rolling_speed <= TURNS * motion.speed:
-            continue
-        end = min(start + phase.duration, float(result.times[-1]))
-        first, last = (int(np.searchsorted(result.times, t - 1e-6)) for t in (start, end))
+        end = min(phase.end, float(result.times[-1]))
+        first, last = (int(np.searchsorted(result.times, t - 1e-6)) for t in (phase.start, end))
         heat = result.generated(last)[0] - result.generated(first)[0]
-        best = max(best, (heat, last)) if best else (heat, last)
-    return None if best is None else best[1]
+        best, phase_of[last] = (max(best, (heat, last)) if best else (heat, last)), phase
+    return None if best is None else (best[1], phase_of[best[1]])
 
 
-def rolling_resistance(result: Rolled) -> RollingResistance:
-    """Force, N, and coefficient at the `rolling_reading`."""
-    i = rolling_reading(result)
-    if i is None:
+def rolling_resistance(result: Rolled, phases: Sequence[RollingPhase] | None = None) -> RollingResistance:
+    """Force, N, and coefficient at the `rolling_reading`; ``phases``: those that roll, if steady."""
+    best = _most_heat(result, rolling_phases(result.tyre) if phases is None else phases)
+    if best is None:
         return RollingResistance("", 0.0, 0.0, 0.0, 0.0)
-    t, drive, tyre = just_before(result.times, i), result.tyre.drive, result.tyre
-    phase = drive.phases[drive.locate(t)[0]].name
-    speed, load = tyre.motion(t).speed, float(tyre.schedule.mean(lambda case: case.load, t))
+    i, phase = best
+    t = just_before(result.times, i)
+    name, speed, load = phase.name, phase.speed, phase.load
+    if phases is None:
+        drive, tyre = result.tyre.drive, result.tyre
+        name = drive.phases[drive.locate(t)[0]].name
+        speed, load = tyre.motion(t).speed, float(tyre.schedule.mean(lambda case: case.load, t))
     force, cold = result.generated(i)[1] / speed, result.cold_power(t) / speed
-    return RollingResistance(phase, force, force / load, cold, cold / load)
+    return RollingResistance(name, force, force / load, cold, cold / load)
 
 
 def just_before(times: Array, i: int) -> float:

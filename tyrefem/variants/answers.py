@@ -7,7 +7,9 @@ these functions may use: results of full runs and variants of reduced models hav
 from __future__ import annotations
 
 import fnmatch
+import functools
 from collections.abc import Callable, Mapping
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
@@ -40,6 +42,8 @@ Function = Callable[["FinishedRun", float | None], Answers]
 #: Names of a function's answers for a study; ``*`` stands for any name.
 Names = Callable[["StudyData"], list[str]]
 _FUNCTIONS: list[tuple[Function, Names]] = []
+#: Functions whose answers need no run.
+_OF_INPUTS: dict[str, Callable[[RollingTyre], Answers]] = {}
 
 
 def answer(names: Names) -> Callable[[Function], Function]:
@@ -52,16 +56,40 @@ def answer(names: Names) -> Callable[[Function], Function]:
     return add
 
 
-def answers(result: FinishedRun, time_to: float | None = None) -> Answers:
+def answer_of_inputs(names: Names) -> Callable[[Callable[[RollingTyre], Answers]], Function]:
+    """Add a function of the tyre before any run to the answers of every variant; ``names`` as in `answer`."""
+
+    def add(function: Callable[[RollingTyre], Answers]) -> Function:
+        _OF_INPUTS[function.__name__] = function
+
+        @answer(names)
+        @functools.wraps(function)
+        def of_run(result: FinishedRun, _: float | None) -> Answers:
+            return function(result.tyre)
+
+        return of_run
+
+    return add
+
+
+def input_answers(tyre: RollingTyre) -> dict[str, Answers]:
+    """Function -> its answers, of the functions that need no run."""
+    return {name: function(tyre) for name, function in _OF_INPUTS.items()}
+
+
+def answers(
+    result: FinishedRun, time_to: float | None = None, known: Mapping[str, Mapping[str, Any]] = MappingProxyType({})
+) -> Answers:
     """All answers of a run: name, ending in its unit -> value in SI units or degC.
 
     Parameters
     ----------
     time_to : degC; `TIME_TO` is the time at which any point of the tyre first reaches this temperature.
+    known : answers that need no run, as `input_answers`.
     """
     values: Answers = {}
     for function, _ in _FUNCTIONS:
-        values |= function(result, time_to)
+        values |= known[function.__name__] if function.__name__ in known else function(result, time_to)
     return values
 
 
@@ -172,19 +200,19 @@ def shares(result: FinishedRun, _: float | None) -> Answers:
     return values | {"heat_J": made}
 
 
-@answer(lambda _: ["mass_kg"])
-def mass(result: FinishedRun, _: float | None) -> Answers:
+@answer_of_inputs(lambda _: ["mass_kg"])
+def mass(tyre: RollingTyre) -> Answers:
     """Mass of the whole tyre, kg."""
     from tyrefem.materials.cord_layers import masses
 
-    study = result.study
+    study = tyre.study
     return {"mass_kg": float(sum(masses(study.section, study.materials).values()))}
 
 
-@answer(lambda _: ["load_N", "deflection_m"])
-def drive(result: FinishedRun, _: float | None) -> Answers:
+@answer_of_inputs(lambda _: ["load_N", "deflection_m"])
+def drive(tyre: RollingTyre) -> Answers:
     """Load and deflection of the last phase."""
-    schedule, end = result.tyre.schedule, result.tyre.drive.end * (1 - 1e-12)
+    schedule, end = tyre.schedule, tyre.drive.end * (1 - 1e-12)
     return {
         "load_N": schedule.mean(lambda case: case.load, end),
         "deflection_m": schedule.mean(lambda case: case.deflection, end),
