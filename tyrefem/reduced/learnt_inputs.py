@@ -112,13 +112,23 @@ class LearntInputs(Brief):
             if not alike(rows[b], exact):
                 return None
         template = reduced_balance(model, model.base)
-        return [LearntBalance(template, row, each) for row, each in zip(rows, changes, strict=True)]
+        empty = [name for name, values in input_answers(model.base).items() if not values]
+        return [LearntBalance(template, row, each, empty) for row, each in zip(rows, changes, strict=True)]
 
 
 class LearntBalance(ReducedBalance):
-    """The balance of a variant from its learnt inputs; its tyre is made only where it is wanted."""
+    """The balance of a variant from its learnt inputs; its tyre is made only where it is wanted.
 
-    def __init__(self, like: ReducedBalance, known: Mapping[str, Array], changes: Mapping[str, Any]) -> None:
+    Parameters
+    ----------
+    like : of the model's base study. known : the variant's inputs by name. changes : the variant's.
+    empty : functions of answers that give none for this study.
+    """
+
+    def __init__(
+        self, like: ReducedBalance, known: Mapping[str, Array], changes: Mapping[str, Any], empty: Sequence[str]
+    ) -> None:
+        self.empty = empty
         self.like, self.known, self.inputs, self.changes = like, known, known, changes
         self._made: RollingTyre | None = None
         self.model, self.films, self.reservoirs, self.layout = like.model, like.films, like.reservoirs, like.layout
@@ -142,7 +152,7 @@ class LearntBalance(ReducedBalance):
 
     def on(self, model: ReducedModel) -> ReducedBalance:
         """The same balance on other modes."""
-        return LearntBalance(self.like.on(model), self.inputs, self.changes)
+        return LearntBalance(self.like.on(model), self.inputs, self.changes, self.empty)
 
     @functools.cached_property
     def capacities(self) -> Array:
@@ -179,7 +189,7 @@ class LearntBalance(ReducedBalance):
     @functools.cached_property
     def answers(self) -> dict[str, dict[str, float]]:
         """Function of answers -> its answers, of those that need no temperature."""
-        answers: dict[str, dict[str, float]] = {}
+        answers: dict[str, dict[str, float]] = {name: {} for name in self.empty}
         for name, value in self.inputs.items():
             kind, *names = name.split()
             if kind == "answer":

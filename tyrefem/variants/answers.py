@@ -73,8 +73,9 @@ def answer_of_inputs(names: Names) -> Callable[[Callable[[RollingTyre], Answers]
 
 
 def input_answers(tyre: RollingTyre) -> dict[str, Answers]:
-    """Function -> its answers, of the functions that need no run."""
-    return {name: function(tyre) for name, function in _OF_INPUTS.items()}
+    """Function -> its answers, of the functions that need no run; empty where the study has none of its answers."""
+    none: dict[str, Answers] = {function.__name__: {} for function, names in _FUNCTIONS if not names(tyre.study)}
+    return none | {name: function(tyre) for name, function in _OF_INPUTS.items()}
 
 
 def answers(
