@@ -9,6 +9,7 @@ variants are made as studies, too, and compared.
 from __future__ import annotations
 
 import functools
+import hashlib
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -40,8 +41,8 @@ Array = NDArray[np.float64]
 TABLES = ("drive", "materials", "boundaries", "mechanics")
 #: Inputs of which all entries depend on the same numbers.
 LARGE = ("energies", "loss")
-#: Fewer variants than this are made as studies.
-WORTH_LEARNING = 200
+#: Variants per evaluation at which learning takes as long as it saves; evaluations per number, at least.
+VARIANTS_PER_EVALUATION, LEAST_PER_NUMBER = 4, 7
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,6 +64,13 @@ class LearntInputs(Brief):
 
     def _facts(self) -> Mapping[str, Any]:
         return self.entries._facts()
+
+    @functools.cached_property
+    def digest(self) -> str:
+        """Digest of the box and of all values in its middle."""
+        middle = self.at(np.full((1, len(self.varied)), 0.5))
+        parts = [repr(self.varied).encode(), *(name.encode() + array.tobytes() for name, array in middle.items())]
+        return hashlib.sha256(b" ".join(parts)).hexdigest()[:16]
 
     def place(self, changes: Mapping[str, Any]) -> Array | None:
         """The point of the unit box of a variant's changes; None: outside, or not of these numbers alone."""
@@ -246,8 +254,14 @@ def _is_steady(balance: ReducedBalance) -> bool:
     return steady and has_tabulated_loss(balance) and not HeatChange(balance).acts
 
 
-def learnt_inputs(model: ReducedModel, varied: Sequence[Varied]) -> LearntInputs | None:
-    """The inputs of a box's variants; None: they do not separate, or change in a phase, or are not numbers."""
+def learnt_inputs(model: ReducedModel, varied: Sequence[Varied], variants: int) -> LearntInputs | None:
+    """The inputs of a box's variants.
+
+    None: they do not separate, change in a phase, are not numbers, or the ``variants`` are too few to learn for.
+    """
+    most = variants // VARIANTS_PER_EVALUATION
+    if most < LEAST_PER_NUMBER * len(varied):
+        return None
     study: StudyData = model.base.study
     keys = [key for number in varied for key in number.keys]
     if any(number.values for number in varied) or any(key.split(".")[0] not in TABLES for key in keys):
@@ -269,7 +283,7 @@ def learnt_inputs(model: ReducedModel, varied: Sequence[Varied]) -> LearntInputs
         return used, dict(_entries(inputs))
 
     try:
-        return LearntInputs(tuple(varied), shapes, separated(evaluated, len(varied)))
+        return LearntInputs(tuple(varied), shapes, separated(evaluated, len(varied), most))
     except (NotSeparableError, NotReducibleError, InputError):
         return None
 

@@ -29,8 +29,8 @@ RELATIVE = 1e-8
 INTERVALS = (2, 4, 8, 16)
 #: Points that test whether an array is a sum or a product, and points that test the whole.
 TRIALS, CHECKS = 2, 6
-#: Evaluations at most of two numbers that do not separate.
-MOST_PAIRS = 160
+#: Points at most of each of two numbers that do not separate.
+MOST_POINTS = 13
 
 
 class NotSeparableError(Exception):
@@ -114,19 +114,20 @@ class Separated(Brief):
         return {name: array(x) for name, array in self.arrays.items()}
 
 
-def separated(function: Function, count: int, seed: int = 0) -> Separated:
-    """Learn the arrays of a function of ``count`` numbers.
+def separated(function: Function, count: int, most: int = 1000, seed: int = 0) -> Separated:
+    """Learn the arrays of a function of ``count`` numbers from ``most`` evaluations at most.
 
     Raises
     ------
-    NotSeparableError : polynomials do not converge, more than two numbers do not separate, or a test point is missed.
+    NotSeparableError : more evaluations would be needed, polynomials do not converge, more than two numbers do not
+        separate, or a test point is missed.
     """
-    return _Learning(function, count, seed).learnt()
+    return _Learning(function, count, most, seed).learnt()
 
 
 class _Learning:
-    def __init__(self, function: Function, count: int, seed: int) -> None:
-        self.function, self.count, self.evaluations = function, count, 0
+    def __init__(self, function: Function, count: int, most: int, seed: int) -> None:
+        self.function, self.count, self.most, self.evaluations = function, count, most, 0
         self.random = np.random.default_rng(seed)
         self.middle, self.centre = self._at(np.full(count, 0.5))
 
@@ -148,8 +149,13 @@ class _Learning:
         return Separated(arrays, self.evaluations)
 
     def _at(self, x: Array) -> tuple[Array, Mapping[str, Array]]:
+        self._check(1)
         self.evaluations += 1
         return self.function(x)
+
+    def _check(self, more: int) -> None:
+        if self.evaluations + more > self.most:
+            raise NotSeparableError(f"more than {self.most} evaluations would be needed")
 
     def _moved(self, numbers: Sequence[int], places: Sequence[float]) -> tuple[Array, Mapping[str, Array]]:
         x = np.full(self.count, 0.5)
@@ -162,7 +168,7 @@ class _Learning:
         done: dict[str, Part] = {}
         left = set(self.centre)
         for intervals in INTERVALS:
-            points = [round(0.5 - 0.5 * float(np.cos(np.pi * k / intervals)), 12) for k in range(intervals + 1)]
+            points = chebyshev(intervals + 1).tolist()
             new = [point for point in points if point not in at]
             for point in new:
                 used, values = self._moved([number], [point])
@@ -211,11 +217,22 @@ class _Learning:
     def _grid(self, pair: tuple[int, int], lines: Sequence[Mapping[str, Part]]) -> dict[str, Part]:
         """Parts of two numbers, of the arrays that depend on both."""
         names = [name for name in lines[pair[0]] if name in lines[pair[1]]]
-        nodes = tuple(max((lines[number][name].nodes[0] for name in names), key=len) for number in pair)
-        if len(nodes[0]) * len(nodes[1]) > MOST_PAIRS:
-            raise NotSeparableError(f"numbers {pair[0] + 1} and {pair[1] + 1} need too many evaluations together")
+        # Fewer points than of a line may do: the test points decide.
+        nodes = tuple(
+            chebyshev(min(max(len(lines[number][name].nodes[0]) for name in names), MOST_POINTS)) for number in pair
+        )
+        self._check(len(nodes[0]) * len(nodes[1]))
         values = [self._moved(pair, places)[1] for places in itertools.product(*nodes)]
         return {name: Part(pair, nodes, np.array([np.ravel(each[name]) for each in values])) for name in names}
+
+
+def chebyshev(count: int) -> Array:
+    """Chebyshev points of the unit interval, with its ends: those of 3 are among those of 5.
+
+    >>> chebyshev(3).tolist()
+    [0.0, 0.5, 1.0]
+    """
+    return np.round(0.5 - 0.5 * np.cos(np.pi * np.arange(count) / (count - 1)), 12)
 
 
 def _part(number: int, at: Sequence[tuple[float, Mapping[str, Array]]], name: str) -> Part:

@@ -13,7 +13,7 @@ from tyrefem.brief import Brief
 from tyrefem.inputs.changes import all_changed, value_at
 from tyrefem.inputs.study import StudyData
 from tyrefem.reduced.answers import ReducedOutcome, reduced_answers
-from tyrefem.reduced.learnt_inputs import WORTH_LEARNING, learnt_inputs
+from tyrefem.reduced.learnt_inputs import learnt_inputs
 from tyrefem.reduced.model import NotReducibleError, ReducedModel
 from tyrefem.reduced.shapes import shape_numbers
 from tyrefem.reduced.training import ReducedFineness
@@ -225,8 +225,7 @@ def surrogate(
             energies=None if training.cycles is None else training.cycles.error,
         )
         if certificate.good:
-            if len(plan.variants) >= WORTH_LEARNING:
-                model = replace(model, inputs=learnt_inputs(model, plan.varied))
+            model = replace(model, inputs=learnt_inputs(model, plan.varied, len(plan.variants)))
             return Surrogate(model, plan.varied, certificate, plan.time_to)
     assert certificate is not None
     if certificate.worst <= SAFETY * tolerance:

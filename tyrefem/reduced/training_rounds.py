@@ -65,8 +65,8 @@ class PackedModel:
     @functools.cached_property
     def digest(self) -> str:
         """Digest of the study and the modes."""
-        parts = (self.shapes, self.further, self.cycles, self.inputs)
-        text = f"{self.base.digest} {self.counts} {' '.join(str(part is None) for part in parts)}"
+        without = [part is None for part in (self.shapes, self.further, self.cycles)]
+        text = f"{self.base.digest} {self.counts} {without} {self.inputs and self.inputs.digest}"
         return hashlib.sha256(text.encode() + self.V.tobytes()).hexdigest()[:16]
 
     def unpacked(self) -> ReducedModel:
