@@ -117,7 +117,7 @@ class LearntInputs(Brief):
                 exact = inputs_of(reduced_balance(model, model.tyre(model.base.study.replace(changes[b]))))
             except (InputError, NotReducibleError):
                 return None
-            if not alike(rows[b], exact):
+            if not same_inputs(rows[b], exact):
                 return None
         template = reduced_balance(model, model.base)
         empty = [name for name, values in input_answers(model.base).items() if not values]
@@ -230,13 +230,16 @@ def inputs_of(balance: ReducedBalance) -> dict[str, Array]:
     return inputs
 
 
-def alike(known: Mapping[str, Array], exact: Mapping[str, Array]) -> bool:
+def same_inputs(known: Mapping[str, Array], exact: Mapping[str, Array]) -> bool:
     """Are the inputs those of a study, but for written digits?"""
-    return known.keys() == exact.keys() and all(
-        known[name].shape == exact[name].shape
-        and np.abs(known[name] - exact[name]).max(initial=0.0) <= RELATIVE * np.abs(exact[name]).max(initial=0.0)
-        for name in exact
-    )
+    if known.keys() != exact.keys():
+        return False
+    for name, array in exact.items():
+        # Entries of small inputs have units of their own.
+        scale = np.abs(array).max(initial=0.0) if name.startswith(LARGE) else np.abs(array)
+        if known[name].shape != array.shape or not (np.abs(known[name] - array) <= RELATIVE * scale).all():
+            return False
+    return True
 
 
 def _structure(balance: ReducedBalance) -> tuple[Any, ...]:
