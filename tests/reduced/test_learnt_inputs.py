@@ -13,7 +13,8 @@ from tyrefem import study
 from tyrefem.reduced.answers import learnt_outcomes, outcomes_of
 from tyrefem.reduced.balance import matrices_of
 from tyrefem.reduced.error_estimate import PARTS, SAFETY_FACTOR, TAU, estimated_errors
-from tyrefem.reduced.learnt_inputs import LearntInputs, learnt_inputs
+from tyrefem.reduced.learnt_balance import learnt_inputs
+from tyrefem.reduced.learnt_inputs import LearntInputs
 from tyrefem.reduced.model import ReducedModel
 from tyrefem.reduced.separated import NotSeparableError, separated
 from tyrefem.reduced.surrogate import surrogate

@@ -10,6 +10,7 @@ from tyrefem.inputs.study import StudyData
 from tyrefem.reduced.balance import ReducedBalance, reduced_balance
 from tyrefem.reduced.batch import Batch
 from tyrefem.reduced.integration import integrate
+from tyrefem.reduced.learnt_balance import learnt_balances
 from tyrefem.reduced.model import NotReducibleError, ReducedModel
 from tyrefem.reduced.readout import Readout
 from tyrefem.reduced.shaped_model import fill
@@ -62,7 +63,7 @@ def learnt_outcomes(
     model: ReducedModel, changes: Sequence[Mapping[str, Any]], time_to: float | None
 ) -> list[ReducedOutcome] | None:
     """The outcome of every variant, given by its changes, with learnt inputs; None: these do not hold for them all."""
-    balances = None if model.inputs is None else model.inputs.balances(model, changes)
+    balances = learnt_balances(model, changes)
     if balances is None:
         return None
     solutions = balance_solutions(model, list(enumerate(balances)), TIME_TOLERANCE, BATCH_SIZE)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,12 +19,10 @@ from tyrefem.geometry.wall import wall_of
 from tyrefem.inputs.study import StudyData
 from tyrefem.reduced.exchanges import Exchanges, Layout, exchanges
 from tyrefem.reduced.learnt_cycles import LearntCycles
+from tyrefem.reduced.learnt_inputs import LearntInputs
 from tyrefem.reduced.pod import CANDIDATE_NODES
 from tyrefem.reduced.shape_operators import ShapeGeometry, ShapeOperators
 from tyrefem.simulation.rolling_tyre import RollingTyre
-
-if TYPE_CHECKING:
-    from tyrefem.reduced.learnt_inputs import LearntInputs
 
 Array = NDArray[np.float64]
 

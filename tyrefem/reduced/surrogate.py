@@ -13,7 +13,7 @@ from tyrefem.brief import Brief
 from tyrefem.inputs.changes import all_changed, value_at
 from tyrefem.inputs.study import StudyData
 from tyrefem.reduced.answers import ReducedOutcome, reduced_answers
-from tyrefem.reduced.learnt_inputs import learnt_inputs
+from tyrefem.reduced.learnt_balance import learnt_inputs
 from tyrefem.reduced.model import NotReducibleError, ReducedModel
 from tyrefem.reduced.shapes import shape_numbers
 from tyrefem.reduced.training import ReducedFineness
