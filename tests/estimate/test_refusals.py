@@ -214,10 +214,10 @@ def test_large_lists_of_cases_and_tables(free: Callable[[float], None], tmp_path
         read_table(table)
     cases = tmp_path / "cases.csv"
     cases.write_text(
-        "name,drive.speed [mph]\n" + "".join(f"c{n},{10 + n / 1e4}\n" for n in range(20_000)), encoding="utf-8"
+        "name,drive.speed [mph]\n" + "".join(f"c{n},{10 + n / 1e4}\n" for n in range(70_000)), encoding="utf-8"
     )
     refused(
-        lambda: plan_of(tyrefem.study(NASA, COARSE), {}, cases=str(cases)), "cases", "cases.csv makes 20,000 variants"
+        lambda: plan_of(tyrefem.study(NASA, COARSE), {}, cases=str(cases)), "cases", "cases.csv makes 70,000 variants"
     )
 
 
