@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,7 @@ from tyrefem.mechanics.footprint.harmonics import Harmonics
 from tyrefem.mechanics.footprint.nonlinear import NonlinearForces, Tangent
 from tyrefem.mechanics.footprint.rotations import Rotations
 from tyrefem.mechanics.footprint.taut_tyre import TautTyre, tautened
+from tyrefem.mechanics.rolling.extreme_motions import Direction, ExtremeMotions
 from tyrefem.mechanics.rolling.tread_influence import MIRROR, AntisymmetricHarmonics, TreadInfluence
 
 Array = NDArray[np.float64]
@@ -101,6 +102,8 @@ class MotionFamily(Brief):
     tyre: TyreOnFootprint
     odd: bool
     antisymmetric: bool
+    #: Extreme motions of earlier searches: the next begins with them.
+    _extreme: list[ExtremeMotions] = field(default_factory=list, init=False, repr=False)
 
     @functools.cached_property
     def _held(self) -> NDArray[np.int64]:
@@ -181,13 +184,16 @@ class MotionFamily(Brief):
         forces[:, self.tread] = self.free(loads)
         folding = FoldingElements()
         tangent = self._tangent
+        known = self._extreme[0] if self._extreme else ExtremeMotions.none(forces.size)
         while True:
-            motion, against = self._search(tangent, forces)
-            if against is None:
+            motion, directions, stable = self._search(tangent, forces, known)
+            if stable:
+                if not folding:
+                    self._extreme[:] = [known.after(directions)]
                 return motion
-            if not folding.add(tangent, against):
+            if not folding.add(tangent, directions[-1].motion):
                 raise InputError("the tyre is not stable in its footprint: a small motion about it has no stiffness")
-            tangent = folding.convex(self._tangent)
+            tangent, known = folding.convex(self._tangent), ExtremeMotions.none(forces.size)
 
     def _moving(self, field: Array) -> Array:
         """A field (highest + 1, n_dofs) without held degrees of freedom and those that no wave of n = 0 has."""
@@ -197,24 +203,32 @@ class MotionFamily(Brief):
             field[0, component::COMPONENTS] = 0.0
         return field
 
-    def _search(self, tangent: Tangent, residual: Array) -> tuple[Array, Array | None]:
-        """Conjugate gradients: the motion, and a direction with negative stiffness or None."""
-        motion = np.zeros_like(residual)
-        along = change = self._led(residual)
+    def _search(self, tangent: Tangent, residual: Array, known: ExtremeMotions) -> tuple[Array, list[Direction], bool]:
+        """Conjugate gradients: the motion, the directions of the search, and False if the last of them has no positive
+        stiffness."""
+        change = self._led(residual)
+        least = self.tyre.accuracy**2 * TautTyre.work(residual, change)
+        motion = known.balanced(residual)
+        if motion.any():
+            residual = residual - self._moving(tangent.product(motion))
+            change = self._led(residual)
         size = TautTyre.work(residual, change)
-        least = self.tyre.accuracy**2 * size
+        along, led = known.without(change, residual)
+        directions: list[Direction] = []
         for _ in range(ITERATIONS):
             if size <= least:
-                return motion, None
+                return motion, directions, True
             bent = self._moving(tangent.product(along))
             stiffness = TautTyre.work(bent, along)
+            directions.append(Direction.of(along, bent, led, stiffness))
             if stiffness <= 0:
-                return motion, along
+                return motion, directions, False
             motion += size / stiffness * along
             residual = residual - size / stiffness * bent
             change, before = self._led(residual), size
             size = TautTyre.work(residual, change)
-            along = change + size / before * along
+            part = known.without(change, residual)
+            along, led = (new + size / before * old for new, old in zip(part, (along, led), strict=True))
         raise InputError(f"small motions about the footprint are not found in {ITERATIONS} iterations")
 
     def _led(self, residual: Array) -> Array:
