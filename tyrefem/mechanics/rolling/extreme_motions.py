@@ -85,7 +85,7 @@ class ExtremeMotions:
 
 def _flat(field: Array) -> Array:
     """A field (n, n_dofs) in a row, in single precision: products of rows are works over pi."""
-    row = np.array(field, dtype=np.float32)
+    row: Array = np.array(field, dtype=np.float32)
     row[0] *= np.float32(np.sqrt(2))
     return row.ravel()
 

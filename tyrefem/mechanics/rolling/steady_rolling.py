@@ -30,8 +30,8 @@ Array = NDArray[np.float64]
 SETTLED, ROUNDS = 1e-7, 60
 #: Change of the share of the first step in contact at which it has settled; rounds before it is left as it is.
 FRONT_SETTLED, FRONT_ROUNDS = 0.05, 3
-#: Rounds in which forces on the loaded tyre are made known.
-LOADED_ROUNDS = 12
+#: Rounds in which forces on the loaded tyre are made known, and the change of forces at which a round ends.
+LOADED_ROUNDS, ON_THE_WAY = 12, 1e-3
 #: With a law of friction a few points may stick and slip in turn: after so many rounds the change of all forces
 #: together may be this.
 PATIENCE, SETTLED_LAW = 16, 5e-4
@@ -125,19 +125,26 @@ class SteadyRolling(Brief):
         """  # fmt: skip
         if start is not None and self._loaded:
             start = replace(start, grid=start.grid.loaded(self._loaded[0]))
-        rolled = self._settled(motion, given, harmonics, start, guess)
+        if self.shape is None or self.shape.loaded is None:
+            return self._settled(motion, given, harmonics, start, guess)
+        accuracy = ON_THE_WAY
+        rolled = self._settled(motion, given, harmonics, start, guess, accuracy)
         for _ in range(LOADED_ROUNDS):
             grid, forces = rolled.grid, rolled.grid.shape_forces
-            if grid.shape is None or grid.shape.loaded is None or forces is None:
-                break
+            assert grid.shape is not None
+            assert grid.shape.loaded is not None
+            assert forces is not None
             added = np.moveaxis(rolled.components, 2, 1) - forces
             loaded = grid.shape.loaded.knowing(grid.points_on_wheel(), added)
-            if loaded is grid.shape.loaded:
-                break
-            self._loaded[:] = [loaded]
-            again = replace(rolled, grid=grid.loaded(loaded))
-            rolled = self._settled(motion, given, harmonics, again, guess)
-        return rolled
+            if loaded is not grid.shape.loaded:
+                self._loaded[:] = [loaded]
+                rolled = replace(rolled, grid=grid.loaded(loaded))
+            elif accuracy == SETTLED:
+                return rolled
+            else:
+                accuracy = SETTLED
+            rolled = self._settled(motion, given, harmonics, rolled, guess, accuracy)
+        return rolled if accuracy == SETTLED else self._settled(motion, given, harmonics, rolled, guess)
 
     def _settled(
         self,
@@ -146,8 +153,10 @@ class SteadyRolling(Brief):
         harmonics: int,
         start: RolledTyre | None,
         guess: tuple[float, float] | None,
+        accuracy: float = SETTLED,
     ) -> RolledTyre:
-        """`roll` with the motions of the loaded tyre that are known."""
+        """`roll` with the motions of the loaded tyre that are known, until forces change by less than ``accuracy`` of
+        the largest."""
         if guess is None:
             guess = (0.1 * self.pressing.bottoming, self.reach) if start is None else (start.deflection, start.travel)
         guess = (
@@ -157,6 +166,8 @@ class SteadyRolling(Brief):
         self.pressing.check(guess[0])
         grid = self._near(harmonics, guess[0]) if start is None else start.grid
         last, before, search = start, None, CoefficientSearch(self.friction)
+        if start is not None and not callable(self.friction):
+            before = start.contact.forces
         front = None if start is None else start.before
         for number in range(ROUNDS):
             rolled = self._solved(grid, motion, given, guess, last, search.of(grid, last), front)
@@ -170,7 +181,7 @@ class SteadyRolling(Brief):
                 grid = grid.turned(self._turn(rolled))
             forces = rolled.contact.forces
             loosely = callable(self.friction) and number >= PATIENCE
-            size, settled = (np.sum, SETTLED_LAW) if loosely else (np.max, SETTLED)
+            size, settled = (np.sum, SETTLED_LAW) if loosely else (np.max, accuracy)
             change = math.inf if before is None else float(size(np.abs(forces - before)))
             fronted = self._fronted(rolled, front) or number >= FRONT_ROUNDS
             # A front that goes to and fro between two steps is left where it is.
