@@ -27,6 +27,7 @@ ALLOWED = {
     "output/__init__.py: _read = {}": "the files that the command in work has read",
     "output/__init__.py: _written = {}": "the folders that the command in work has written to",
     "variants/answers.py: _FUNCTIONS = []": "the functions that answer, registered when modules are read",
+    "variants/answers.py: _OF_INPUTS = {}": "those of them that need no run",
     "variants/task.py: _folders = []": "the temporary folder of this process, one",
     "diagnose/evaluations.py: _MODEL = {}": "the latest forward model of a worker process, one",
     "diagnose/blind_rates.py: _TEST = []": "the blind test of a worker process, given when it starts",

@@ -98,7 +98,8 @@ def test_priors_of_the_named_effect_are_tried(hidden: tuple[DiagnosisData, Path]
     for change in d.prior_sensitivity:
         if not change.decides:
             assert (change.verdict, change.best) == (PARTLY, "hot-road")
-    # With its own priors the share is that of the verdict; a third of the odds of the weakest model is a third there.
+    # A third of the odds of the weakest model is a third there; forms of the effect in single runs, which are less
+    # probable too, give some of it back.
     least = min(d.robustness.least("hot-road"), 1 - 1e-12)
     weaker = next(
         change
@@ -106,7 +107,8 @@ def test_priors_of_the_named_effect_are_tried(hidden: tuple[DiagnosisData, Path]
         if (change.effect, change.prior, change.factor) == ("hot-road", PROBABILITY, FACTORS[0])
     )
     if not weaker.decides:
-        assert weaker.share / (1 - weaker.share) == pytest.approx(least / (1 - least) / 3, rel=1e-3)
+        odds = least / (1 - least)
+        assert 0.999 * odds / 3 < weaker.share / (1 - weaker.share) < 0.999 * odds
 
 
 def test_the_amended_study_has_the_effect_and_the_strain_energy(hidden: tuple[DiagnosisData, Path]) -> None:

@@ -234,8 +234,10 @@ class Readout:
 
     def end_budget(self, variant: int) -> HeatBudget:
         """The whole tyre's heat budget of a variant at the end."""
-        alike = self.solution.batch.balances[variant].alike
-        written = self._heats.get(("budget names", id(alike)), lambda: _budget_names(alike))
+        first = self._first_alike[variant]
+        written = self._heats.get(
+            ("budget names", first), lambda: _budget_names(self.solution.batch.balances[first].alike)
+        )
         names, energies, powers, residual, imbalance = self._heats.get(
             ("end budget", written), lambda: self._end_budget(*written)
         )
@@ -246,6 +248,19 @@ class Readout:
             residual[variant],
             float(imbalance[variant]),
         )
+
+    @functools.cached_property
+    def _first_alike(self) -> list[int]:
+        """By variant the number of the first one that is like the same tyre."""
+        tyres = [balance.alike for balance in self.solution.batch.balances]
+        firsts: list[int] = []
+        numbers = []
+        for number, tyre in enumerate(tyres):
+            known = next((first for first in firsts if tyres[first] is tyre), number)
+            if known == number:
+                firsts.append(number)
+            numbers.append(known)
+        return numbers
 
     def _end_budget(
         self, titles: tuple[Any, ...], half: bool, added: tuple[Any, ...]
