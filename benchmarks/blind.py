@@ -21,7 +21,7 @@ from pathlib import Path
 from typing import Any
 
 import tyrefem as tf
-from tyrefem.diagnose.blind_rates import run_blind
+from tyrefem.diagnose.blind.rates import run_blind
 from tyrefem.output import atomic_path
 from tyrefem.reports.blind import save
 

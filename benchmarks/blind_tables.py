@@ -16,9 +16,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from tyrefem.diagnose.blind import DATA_MODELS, STRUCTURAL
-from tyrefem.diagnose.blind_criteria import Rate
-from tyrefem.diagnose.blind_rates import Blind
+from tyrefem.diagnose.blind.blind_case import DATA_MODELS, STRUCTURAL
+from tyrefem.diagnose.blind.criteria import Rate
+from tyrefem.diagnose.blind.rates import Blind
 from tyrefem.output import atomic_path
 from tyrefem.reports.blind import picture
 from tyrefem.reports.figures.style import png

@@ -15,11 +15,11 @@ import time
 
 import tyrefem as tf
 from tyrefem.compare.experiment import experiments
-from tyrefem.diagnose.candidates import catalogue_candidates
-from tyrefem.diagnose.evaluations import evaluating
-from tyrefem.diagnose.forward_model import ForwardModel
-from tyrefem.diagnose.runs import measured_drive
-from tyrefem.diagnose.sensitivities import responses, unknowns_of
+from tyrefem.diagnose.data.runs import measured_drive
+from tyrefem.diagnose.data.sensitivities import responses, unknowns_of
+from tyrefem.diagnose.forward.evaluations import evaluating
+from tyrefem.diagnose.forward.forward_model import ForwardModel
+from tyrefem.diagnose.unknowns.candidates import catalogue_candidates
 from tyrefem.diagnose.workflow import diagnose
 from tyrefem.simulation.surroundings import GAS
 

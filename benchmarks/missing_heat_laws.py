@@ -26,9 +26,9 @@ import tomli_w
 
 import tyrefem as tf
 from tyrefem.diagnose import DiagnosisData
-from tyrefem.diagnose.draft_effect import EFFECTS, draft_effects
-from tyrefem.diagnose.record import record
 from tyrefem.diagnose.settings import DiagnosisSettings
+from tyrefem.diagnose.words.draft_effect import EFFECTS, draft_effects
+from tyrefem.diagnose.words.record import record
 from tyrefem.effects import catalogue, use_effects
 from tyrefem.output import atomic_path
 from tyrefem.simulation.surroundings import GAS

@@ -32,23 +32,23 @@ from scipy.stats import chi2
 
 import tyrefem as tf
 from tyrefem.compare.experiment import experiments
-from tyrefem.diagnose.blind import BlindCase
-from tyrefem.diagnose.candidates import Members, SetPrior, catalogue_candidates
-from tyrefem.diagnose.evaluations import Evaluations
-from tyrefem.diagnose.evidence import posterior
-from tyrefem.diagnose.forward_model import DriveResponse, ForwardModel
-from tyrefem.diagnose.isolability import MARGIN, competitors_of, margins
-from tyrefem.diagnose.linear_model import LinearModel
+from tyrefem.diagnose.blind.blind_case import BlindCase
+from tyrefem.diagnose.blind.synthetic import Logger, record
+from tyrefem.diagnose.data.residuals import residuals_of
+from tyrefem.diagnose.data.runs import measured_drive
+from tyrefem.diagnose.data.sensitivities import Sensitivities, responses, sensitivities, unknowns_of
+from tyrefem.diagnose.forward.evaluations import Evaluations
+from tyrefem.diagnose.forward.forward_model import DriveResponse, ForwardModel
+from tyrefem.diagnose.forward.sampling import DriveSampling, SensorSampling
+from tyrefem.diagnose.inference.evidence import posterior
+from tyrefem.diagnose.inference.linear_model import LinearModel
+from tyrefem.diagnose.layout.isolability import MARGIN, competitors_of, margins
 from tyrefem.diagnose.options import SimulationWork
-from tyrefem.diagnose.residuals import residuals_of
-from tyrefem.diagnose.runs import measured_drive
-from tyrefem.diagnose.sampling import DriveSampling, SensorSampling
-from tyrefem.diagnose.sensitivities import Sensitivities, responses, sensitivities, unknowns_of
-from tyrefem.diagnose.set_posteriors import SetPosterior
 from tyrefem.diagnose.settings import DiagnosisSettings
-from tyrefem.diagnose.synthetic import Logger, record
-from tyrefem.diagnose.unknowns import base_unknowns, sensor_unknowns, with_values
-from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, UNEXPLAINED
+from tyrefem.diagnose.unknowns.candidates import Members, SetPrior, catalogue_candidates
+from tyrefem.diagnose.unknowns.unknown import base_unknowns, sensor_unknowns, with_values
+from tyrefem.diagnose.verdicts.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, UNEXPLAINED
+from tyrefem.diagnose.words.set_posteriors import SetPosterior
 from tyrefem.diagnose.workflow import diagnose
 from tyrefem.effects import catalogue
 from tyrefem.errors import InputError

@@ -18,8 +18,8 @@ from typing import Any
 
 import numpy as np
 
-from tyrefem.diagnose.blind_criteria import Rate
-from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED
+from tyrefem.diagnose.blind.criteria import Rate
+from tyrefem.diagnose.verdicts.verdict import CONFOUNDED, IDENTIFIED
 from tyrefem.output import atomic_path
 
 PAGE, TABLE = Path("docs/evidence/diagnosis.md"), Path("docs/evidence/tables/diagnosis-plan-cases.csv")

@@ -15,11 +15,11 @@ import numpy as np
 import pandas as pd
 
 import tyrefem as tf
-from tyrefem.diagnose.blind import BlindCase, measured
-from tyrefem.diagnose.candidates import catalogue_candidates
-from tyrefem.diagnose.other_model import OtherModel
-from tyrefem.diagnose.synthetic import Logger
-from tyrefem.diagnose.unknowns import base_unknowns, sensor_unknowns
+from tyrefem.diagnose.blind.blind_case import BlindCase, measured
+from tyrefem.diagnose.blind.other_model import OtherModel
+from tyrefem.diagnose.blind.synthetic import Logger
+from tyrefem.diagnose.unknowns.candidates import catalogue_candidates
+from tyrefem.diagnose.unknowns.unknown import base_unknowns, sensor_unknowns
 
 STUDY = Path(__file__).parents[1] / "studies" / "example-structural"
 SEED = 20261122

@@ -73,3 +73,10 @@ def test_the_page_draws_the_floors_as_they_are() -> None:
     drawn = re.findall(r"^\| \d+ \| (.+?) \|", floors, re.M)
     named = [re.findall(r"`([\w]+)`", cell) for cell in drawn]
     assert named == [layer.split(" | ") for layer in LAYERS]
+
+
+def test_the_page_names_the_rooms_of_the_diagnosis_in_their_order() -> None:
+    layers = next(contract["layers"] for contract in CONTRACTS if contract.get("containers") == ["tyrefem.diagnose"])
+    page = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
+    rooms = page.partition("## The rooms of the diagnosis")[2].partition("\n## ")[0]
+    assert re.findall(r"`([\w]+)`", "".join(re.findall(r"^\| (`.+?) \|", rooms, re.M))) == layers

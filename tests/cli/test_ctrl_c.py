@@ -163,7 +163,7 @@ def test_blind_and_isolability_go_on(here: Path) -> None:
     # The two have the same runs: what the first has finished serves the second.
     (here / "out").rename(here / "blind")
     (here / "blind/summary.json").unlink()
-    coarse, last = (*coarse[:-1], "blind"), "tyrefem.diagnose.evaluations:Evaluations.of:1"
+    coarse, last = (*coarse[:-1], "blind"), "tyrefem.diagnose.forward.evaluations:Evaluations.of:1"
     line = clean(here, interrupted("blind", "hidden-effect", "--cases", "1", "--force", *coarse, at=last, folder=here))
     assert line == "tyrefem: interrupted; 0 of 1 cases are finished; the same command resumes from there\n"
     assert len(list((here / "blind/.progress").rglob("*.npz"))) == 2

@@ -9,9 +9,9 @@ from typing import Any
 import pytest
 from hidden import FINISHED, WARMER, Case, measure, study
 
-from tyrefem.diagnose import evaluations
-from tyrefem.diagnose.evaluations import ProgressStore
-from tyrefem.diagnose.forward_model import ForwardModel
+from tyrefem.diagnose.forward import evaluations
+from tyrefem.diagnose.forward.evaluations import ProgressStore
+from tyrefem.diagnose.forward.forward_model import ForwardModel
 
 
 @pytest.fixture(scope="session")

@@ -10,13 +10,13 @@ from typing import Any, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.diagnose.candidates import Candidate, Members
-from tyrefem.diagnose.multifidelity import Predictions
-from tyrefem.diagnose.residuals import Residuals
-from tyrefem.diagnose.runs import MeasuredDrive, MeasuredSensor
-from tyrefem.diagnose.sensitivities import Sensitivities
+from tyrefem.diagnose.data.residuals import Residuals
+from tyrefem.diagnose.data.runs import MeasuredDrive, MeasuredSensor
+from tyrefem.diagnose.data.sensitivities import Sensitivities
+from tyrefem.diagnose.forward.multifidelity import Predictions
 from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
-from tyrefem.diagnose.unknowns import Unknown
+from tyrefem.diagnose.unknowns.candidates import Candidate, Members
+from tyrefem.diagnose.unknowns.unknown import Unknown
 from tyrefem.effects.effect import Parameter, Prior
 
 Array = NDArray[np.float64]

@@ -9,7 +9,7 @@ import numpy as np
 
 from tyrefem.diagnose import DiagnosisData
 from tyrefem.diagnose.amend import Change
-from tyrefem.diagnose.verdict import CONFOUNDED, UNEXPLAINED, RankedSet, inclusion
+from tyrefem.diagnose.verdicts.verdict import CONFOUNDED, UNEXPLAINED, RankedSet, inclusion
 
 NEXT = {
     "between": ["hot-road", "sun"],

@@ -17,21 +17,21 @@ from hidden import Case, study
 from made_up import judged
 
 from tyrefem.diagnose import DiagnosisData
+from tyrefem.diagnose.beside.discrepancy import NONE
+from tyrefem.diagnose.beside.law_trials import LawTrial, law_trials
+from tyrefem.diagnose.beside.robustness import Robustness, UnderDiscrepancy
 from tyrefem.diagnose.better_law import CLEARLY, by_better_law
-from tyrefem.diagnose.discrepancy import NONE
-from tyrefem.diagnose.forward_model import ForwardModel
-from tyrefem.diagnose.headline import headline
-from tyrefem.diagnose.law_trials import LawTrial, law_trials
+from tyrefem.diagnose.forward.forward_model import ForwardModel
+from tyrefem.diagnose.forward.sampling import DriveSampling
+from tyrefem.diagnose.forward.strain_law_study import COARSE_MESH, LEVEL_SD, STRETCHES, by_law
 from tyrefem.diagnose.options import Method
-from tyrefem.diagnose.record import record
-from tyrefem.diagnose.robustness import Robustness, UnderDiscrepancy
-from tyrefem.diagnose.sampling import DriveSampling
-from tyrefem.diagnose.set_posteriors import posterior_record
 from tyrefem.diagnose.settings import DiagnosisSettings
-from tyrefem.diagnose.strain_law_study import COARSE_MESH, LEVEL_SD, STRETCHES, by_law
-from tyrefem.diagnose.unknowns import base_unknowns, with_values
-from tyrefem.diagnose.verdict import NO_GAP, PARTLY, UNEXPLAINED
-from tyrefem.diagnose.words import missing_heat_words, verdict_words
+from tyrefem.diagnose.unknowns.unknown import base_unknowns, with_values
+from tyrefem.diagnose.verdicts.verdict import NO_GAP, PARTLY, UNEXPLAINED
+from tyrefem.diagnose.words.headline import headline
+from tyrefem.diagnose.words.record import record
+from tyrefem.diagnose.words.sentences import missing_heat_words, verdict_words
+from tyrefem.diagnose.words.set_posteriors import posterior_record
 from tyrefem.plan.beliefs import diagnosed_beliefs, stored_beliefs
 from tyrefem.reports.diagnosis import page
 

@@ -12,9 +12,9 @@ from typer.testing import CliRunner
 
 import tyrefem as tf
 from tyrefem.cli.commands import app
-from tyrefem.diagnose.blind import STRUCTURAL
-from tyrefem.diagnose.blind_criteria import Rate, acting, failures, in_set, right
-from tyrefem.diagnose.blind_rates import Blind, run_blind
+from tyrefem.diagnose.blind.blind_case import STRUCTURAL
+from tyrefem.diagnose.blind.criteria import Rate, acting, failures, in_set, right
+from tyrefem.diagnose.blind.rates import Blind, run_blind
 from tyrefem.errors import InputError
 from tyrefem.reports.blind import picture, save
 

@@ -11,23 +11,23 @@ import pytest
 from formula import STATED, effect
 from scipy.special import expit
 
-from tyrefem.diagnose.calibration import Calibration, RankTest, Reliability, calibrate
-from tyrefem.diagnose.candidates import Candidate, Members, SetPrior
-from tyrefem.diagnose.conformal import (
+from tyrefem.diagnose.inference.evidence import posterior
+from tyrefem.diagnose.inference.linear_model import DesignMatrix, LinearModel
+from tyrefem.diagnose.layout.calibration import Calibration, RankTest, Reliability, calibrate
+from tyrefem.diagnose.layout.conformal import (
     COVERAGE,
     ConformalCalibration,
     conformal_sets,
     conformal_threshold,
     read_calibration,
 )
-from tyrefem.diagnose.evidence import posterior
-from tyrefem.diagnose.false_alarms import Frequency, false_alarms
-from tyrefem.diagnose.linear_layout import LinearLayout
-from tyrefem.diagnose.linear_model import DesignMatrix, LinearModel
-from tyrefem.diagnose.quick_cases import drawn, posterior_ranks
+from tyrefem.diagnose.layout.false_alarms import Frequency, false_alarms
+from tyrefem.diagnose.layout.linear_layout import LinearLayout
+from tyrefem.diagnose.layout.quick_cases import drawn, posterior_ranks
 from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
-from tyrefem.diagnose.unknowns import Unknown
-from tyrefem.diagnose.words import verdict_words
+from tyrefem.diagnose.unknowns.candidates import Candidate, Members, SetPrior
+from tyrefem.diagnose.unknowns.unknown import Unknown
+from tyrefem.diagnose.words.sentences import verdict_words
 from tyrefem.errors import InputError
 from tyrefem.output import write_json
 

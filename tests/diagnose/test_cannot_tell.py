@@ -10,17 +10,17 @@ from formula import STATED, case, effect
 from hidden import Case
 from made_up import confounded
 
-from tyrefem.diagnose.candidates import SetPrior
-from tyrefem.diagnose.criterion import LogEvidence
-from tyrefem.diagnose.discrepancy import ENERGY, NONE
-from tyrefem.diagnose.exhaustive import Exhaustive
-from tyrefem.diagnose.headline import headline
-from tyrefem.diagnose.partly import NOT_EXCLUDED, beside_discrepancies
-from tyrefem.diagnose.robustness import Robustness, UnderDiscrepancy
-from tyrefem.diagnose.selection import ScoredSet, SelectionProblem
+from tyrefem.diagnose.beside.discrepancy import ENERGY, NONE
+from tyrefem.diagnose.beside.robustness import Robustness, UnderDiscrepancy
+from tyrefem.diagnose.fitting.criterion import LogEvidence
+from tyrefem.diagnose.fitting.exhaustive import Exhaustive
+from tyrefem.diagnose.fitting.selection import ScoredSet, SelectionProblem
 from tyrefem.diagnose.settings import DEFAULT
-from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, UNEXPLAINED, Judgement, judge, ranked
-from tyrefem.diagnose.words import verdict_words
+from tyrefem.diagnose.unknowns.candidates import SetPrior
+from tyrefem.diagnose.verdicts.partly import NOT_EXCLUDED, beside_discrepancies
+from tyrefem.diagnose.verdicts.verdict import CONFOUNDED, IDENTIFIED, UNEXPLAINED, Judgement, judge, ranked
+from tyrefem.diagnose.words.headline import headline
+from tyrefem.diagnose.words.sentences import verdict_words
 
 STEP, LATER = effect("step"), effect("later")
 T = np.linspace(0.0, 1.0, 60)

@@ -9,10 +9,10 @@ from hidden import study
 
 import tyrefem as tf
 from tyrefem.api import Study
-from tyrefem.diagnose.candidates import Candidate, catalogue_candidates
-from tyrefem.diagnose.computed_wave import NAME, ComputedWave, WithWave, computed_wave
 from tyrefem.diagnose.settings import DiagnosisSettings
-from tyrefem.diagnose.unknowns import with_values
+from tyrefem.diagnose.unknowns.candidates import Candidate, catalogue_candidates
+from tyrefem.diagnose.unknowns.computed_wave import NAME, ComputedWave, WithWave, computed_wave
+from tyrefem.diagnose.unknowns.unknown import with_values
 from tyrefem.inputs.study import StudyData
 from tyrefem.mechanics.rolling.critical_speed import ring_speed
 

@@ -10,20 +10,20 @@ import numpy as np
 import pytest
 from formula import Case, case, effect
 
-from tyrefem.diagnose.candidates import SetPrior
-from tyrefem.diagnose.criterion import LogEvidence
-from tyrefem.diagnose.discrepancy import ENERGY, NONE, Discrepancy, beside_law, discrepancies
-from tyrefem.diagnose.energy_shapes import courses, energy_shapes
-from tyrefem.diagnose.fits import first_fits
-from tyrefem.diagnose.forward_selection import ForwardSelection
-from tyrefem.diagnose.partly import beside_discrepancies
-from tyrefem.diagnose.ranked_beside import RankedBeside, robustness, under
-from tyrefem.diagnose.robustness import Robustness
-from tyrefem.diagnose.selection import SelectionProblem
+from tyrefem.diagnose.beside.discrepancy import ENERGY, NONE, Discrepancy, beside_law, discrepancies
+from tyrefem.diagnose.beside.ranked_beside import RankedBeside, robustness, under
+from tyrefem.diagnose.beside.robustness import Robustness
+from tyrefem.diagnose.fitting.criterion import LogEvidence
+from tyrefem.diagnose.fitting.fits import first_fits
+from tyrefem.diagnose.fitting.forward_selection import ForwardSelection
+from tyrefem.diagnose.fitting.selection import SelectionProblem
+from tyrefem.diagnose.fitting.support import ALONE, SENSOR, supports
+from tyrefem.diagnose.inference.shared_error import SharedError
 from tyrefem.diagnose.settings import DEFAULT
-from tyrefem.diagnose.shared_error import SharedError
-from tyrefem.diagnose.support import ALONE, SENSOR, supports
-from tyrefem.diagnose.verdict import IDENTIFIED, PARTLY, UNEXPLAINED, Judgement, judge, ranked
+from tyrefem.diagnose.unknowns.candidates import SetPrior
+from tyrefem.diagnose.unknowns.energy_shapes import courses, energy_shapes
+from tyrefem.diagnose.verdicts.partly import beside_discrepancies
+from tyrefem.diagnose.verdicts.verdict import IDENTIFIED, PARTLY, UNEXPLAINED, Judgement, judge, ranked
 
 NO_EFFECTS = cast(Any, type("Study", (), {"card": type("Card", (), {"effects": ()})}))
 SHAPES = energy_shapes(NO_EFFECTS, DEFAULT)

@@ -10,13 +10,13 @@ from formula import STATED, Array, Case, Law, case, effect
 from hidden import Case as HiddenCase
 from scipy.stats import kstest
 
-from tyrefem.diagnose.candidates import Members, SetPrior
-from tyrefem.diagnose.criterion import LogEvidence
-from tyrefem.diagnose.exhaustive import Exhaustive
-from tyrefem.diagnose.pulls import pulls, pulls_p
-from tyrefem.diagnose.selection import SelectionProblem
+from tyrefem.diagnose.fitting.criterion import LogEvidence
+from tyrefem.diagnose.fitting.exhaustive import Exhaustive
+from tyrefem.diagnose.fitting.pulls import pulls, pulls_p
+from tyrefem.diagnose.fitting.selection import SelectionProblem
 from tyrefem.diagnose.settings import DEFAULT
-from tyrefem.diagnose.verdict import (
+from tyrefem.diagnose.unknowns.candidates import Members, SetPrior
+from tyrefem.diagnose.verdicts.verdict import (
     CONFOUNDED,
     IDENTIFIED,
     NO_GAP,

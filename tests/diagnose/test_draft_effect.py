@@ -13,12 +13,12 @@ import pytest
 from numpy.typing import NDArray
 
 from tyrefem.cli import main
-from tyrefem.diagnose.draft_effect import draft_effects
-from tyrefem.diagnose.heat_law import Exponent, PlaceLaw
-from tyrefem.diagnose.law_evidence import LawFit
-from tyrefem.diagnose.law_places import FILM, FLUX, HEAT, LOSS, LawPlace
-from tyrefem.diagnose.law_terms import LawTerms, Switch
-from tyrefem.diagnose.unknowns import Unknown
+from tyrefem.diagnose.law.evidence import LawFit
+from tyrefem.diagnose.law.heat_law import Exponent, PlaceLaw
+from tyrefem.diagnose.law.places import FILM, FLUX, HEAT, LOSS, LawPlace
+from tyrefem.diagnose.law.terms import LawTerms, Switch
+from tyrefem.diagnose.unknowns.unknown import Unknown
+from tyrefem.diagnose.words.draft_effect import draft_effects
 from tyrefem.effects import catalogue, use_effects
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import study

@@ -11,21 +11,21 @@ import pytest
 from formula import STATED, Case, case, effect
 
 import tyrefem as tf
-from tyrefem.diagnose.candidates import SetPrior
-from tyrefem.diagnose.criterion import LogEvidence
-from tyrefem.diagnose.discrepancy import ENERGY, FURTHER, NONE, READINGS, Discrepancy, without
-from tyrefem.diagnose.energy_shapes import courses, energy_shapes
-from tyrefem.diagnose.fits import first_fits
-from tyrefem.diagnose.forward_selection import ForwardSelection
-from tyrefem.diagnose.gauges import gauges
-from tyrefem.diagnose.partly import beside_discrepancies
-from tyrefem.diagnose.ranked_beside import RankedBeside, fit_beside, robustness
-from tyrefem.diagnose.robustness import Robustness, UnderDiscrepancy
-from tyrefem.diagnose.selection import SelectionProblem
+from tyrefem.diagnose.beside.discrepancy import ENERGY, FURTHER, NONE, READINGS, Discrepancy, without
+from tyrefem.diagnose.beside.ranked_beside import RankedBeside, fit_beside, robustness
+from tyrefem.diagnose.beside.robustness import Robustness, UnderDiscrepancy
+from tyrefem.diagnose.fitting.criterion import LogEvidence
+from tyrefem.diagnose.fitting.fits import first_fits
+from tyrefem.diagnose.fitting.forward_selection import ForwardSelection
+from tyrefem.diagnose.fitting.selection import SelectionProblem
+from tyrefem.diagnose.inference.shared_error import SharedError
 from tyrefem.diagnose.settings import DEFAULT
-from tyrefem.diagnose.shared_error import SharedError
-from tyrefem.diagnose.unknowns import Unknown, with_values
-from tyrefem.diagnose.verdict import PARTLY, UNEXPLAINED, Judgement, judge, ranked
+from tyrefem.diagnose.unknowns.candidates import SetPrior
+from tyrefem.diagnose.unknowns.energy_shapes import courses, energy_shapes
+from tyrefem.diagnose.unknowns.gauges import gauges
+from tyrefem.diagnose.unknowns.unknown import Unknown, with_values
+from tyrefem.diagnose.verdicts.partly import beside_discrepancies
+from tyrefem.diagnose.verdicts.verdict import PARTLY, UNEXPLAINED, Judgement, judge, ranked
 from tyrefem.inputs.name_patterns import SCALES
 
 NO_EFFECTS = cast(Any, type("Study", (), {"card": type("Card", (), {"effects": ()})}))

@@ -9,7 +9,7 @@ import pytest
 from formula import STATED, Array, Case, case, effect
 from scipy.optimize import minimize
 
-from tyrefem.diagnose.fits import FittedSet, continued, first_fits
+from tyrefem.diagnose.fitting.fits import FittedSet, continued, first_fits
 from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
 
 BENDING = effect("bending")

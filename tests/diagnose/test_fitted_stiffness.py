@@ -12,9 +12,9 @@ import pytest
 import tyrefem as tf
 from tyrefem.compare.experiment import experiments
 from tyrefem.diagnose.amend import Change, amended
-from tyrefem.diagnose.forward_model import ForwardModel
-from tyrefem.diagnose.runs import measured_drive
-from tyrefem.diagnose.unknowns import base_unknowns, with_values
+from tyrefem.diagnose.data.runs import measured_drive
+from tyrefem.diagnose.forward.forward_model import ForwardModel
+from tyrefem.diagnose.unknowns.unknown import base_unknowns, with_values
 
 STIFF = {"relative_sd": 0.2}
 SHARED = {f"materials.{entry}": {"base": "nasa-tread", "shear_modulus": STIFF} for entry in ("tread", "sidewall")}

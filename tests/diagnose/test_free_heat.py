@@ -10,19 +10,19 @@ import numpy as np
 import pytest
 from formula import Case, case, effect
 
-from tyrefem.diagnose.candidates import SetPrior
-from tyrefem.diagnose.criterion import LogEvidence
-from tyrefem.diagnose.discrepancy import ENERGY, HEAT, NONE, discrepancies, missing_heat_beside, missing_patches
-from tyrefem.diagnose.exhaustive import Exhaustive
-from tyrefem.diagnose.fits import first_fits
-from tyrefem.diagnose.free_heat import FreeHeat, free_heat
-from tyrefem.diagnose.partly import beside_discrepancies
-from tyrefem.diagnose.ranked_beside import RankedBeside, averaged
-from tyrefem.diagnose.robustness import Robustness, UnderDiscrepancy
-from tyrefem.diagnose.selection import ScoredSet, SelectionProblem
+from tyrefem.diagnose.beside.discrepancy import ENERGY, HEAT, NONE, discrepancies, missing_heat_beside, missing_patches
+from tyrefem.diagnose.beside.free_heat import FreeHeat, free_heat
+from tyrefem.diagnose.beside.ranked_beside import RankedBeside, averaged
+from tyrefem.diagnose.beside.robustness import Robustness, UnderDiscrepancy
+from tyrefem.diagnose.fitting.criterion import LogEvidence
+from tyrefem.diagnose.fitting.exhaustive import Exhaustive
+from tyrefem.diagnose.fitting.fits import first_fits
+from tyrefem.diagnose.fitting.selection import ScoredSet, SelectionProblem
 from tyrefem.diagnose.settings import DEFAULT
-from tyrefem.diagnose.unknowns import Unknown
-from tyrefem.diagnose.verdict import CONFOUNDED, PARTLY, UNEXPLAINED, judge, ranked
+from tyrefem.diagnose.unknowns.candidates import SetPrior
+from tyrefem.diagnose.unknowns.unknown import Unknown
+from tyrefem.diagnose.verdicts.partly import beside_discrepancies
+from tyrefem.diagnose.verdicts.verdict import CONFOUNDED, PARTLY, UNEXPLAINED, judge, ranked
 
 #: Places of the readings along the meridian; the effect heats a narrow place, the patches wide ones.
 S = np.linspace(0.0, 1.0, 120)

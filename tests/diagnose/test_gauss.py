@@ -8,7 +8,7 @@ from scipy.integrate import quad
 from scipy.optimize import minimize
 from scipy.stats import multivariate_normal, norm
 
-from tyrefem.diagnose.evidence import posterior
+from tyrefem.diagnose.inference.evidence import posterior
 
 pytestmark = pytest.mark.fast
 

@@ -19,15 +19,15 @@ from tyrefem.api.diagnosis import Diagnosis
 from tyrefem.api.diagnosis_record import DiagnosisRecord
 from tyrefem.diagnose import DiagnosisData
 from tyrefem.diagnose.amend import Change
-from tyrefem.diagnose.discrepancy import ENERGY, NONE
-from tyrefem.diagnose.headline import QUESTIONS, corrections, headline, label
+from tyrefem.diagnose.beside.discrepancy import ENERGY, NONE
+from tyrefem.diagnose.beside.robustness import Robustness, UnderDiscrepancy
+from tyrefem.diagnose.fitting.support import LeftOut, Support
 from tyrefem.diagnose.numbers import percent
-from tyrefem.diagnose.robustness import Robustness, UnderDiscrepancy
-from tyrefem.diagnose.support import LeftOut, Support
-from tyrefem.diagnose.support_words import alone_words, support_words
-from tyrefem.diagnose.unknowns import Unknown
-from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, PARTLY, UNEXPLAINED, certain_members
-from tyrefem.diagnose.words import noise_words, verdict_words
+from tyrefem.diagnose.unknowns.unknown import Unknown
+from tyrefem.diagnose.verdicts.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, PARTLY, UNEXPLAINED, certain_members
+from tyrefem.diagnose.words.headline import QUESTIONS, corrections, headline, label
+from tyrefem.diagnose.words.sentences import noise_words, verdict_words
+from tyrefem.diagnose.words.support import alone_words, support_words
 from tyrefem.reports.diagnosis import page
 from tyrefem.reports.diagnosis_figures import pictures
 from tyrefem.reports.diagnosis_summary import (

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from tyrefem.diagnose.heat_courses import CourseGrid
-from tyrefem.diagnose.heat_evidence import ProjectedData
-from tyrefem.diagnose.heat_law import PlaceLaw, place_law
-from tyrefem.diagnose.law_evidence import LawData, fitted_law, law_data, plain_switch
-from tyrefem.diagnose.law_scatter import SeriesScatter
-from tyrefem.diagnose.law_terms import DriveVariables, drive_variables, fine_times, law_terms, structures
+from tyrefem.diagnose.heat.courses import CourseGrid
+from tyrefem.diagnose.heat.evidence import ProjectedData
+from tyrefem.diagnose.law.evidence import LawData, fitted_law, law_data, plain_switch
+from tyrefem.diagnose.law.heat_law import PlaceLaw, place_law
+from tyrefem.diagnose.law.scatter import SeriesScatter
+from tyrefem.diagnose.law.terms import DriveVariables, drive_variables, fine_times, law_terms, structures
 
 Array = NDArray[np.float64]
 #: Run -> speed m/s, load N, pressure Pa.

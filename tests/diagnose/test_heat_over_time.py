@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from tyrefem.diagnose.heat_courses import CourseGrid, courses
-from tyrefem.diagnose.heat_evidence import ProjectedData
-from tyrefem.diagnose.heat_patches import ALL_LAYERS, INNER, OUTER
-from tyrefem.diagnose.heat_sources import Place, UnknownSource, place_shares, pursuit, timed, told_courses
-from tyrefem.diagnose.heat_values import values_with_sources
-from tyrefem.diagnose.heat_words import course_words, inside_share, is_told
+from tyrefem.diagnose.heat.courses import CourseGrid, courses
+from tyrefem.diagnose.heat.evidence import ProjectedData
+from tyrefem.diagnose.heat.sources import Place, UnknownSource, place_shares, pursuit, timed, told_courses
+from tyrefem.diagnose.heat.values import values_with_sources
 from tyrefem.diagnose.numbers import percent
-from tyrefem.diagnose.unknowns import Unknown
+from tyrefem.diagnose.unknowns.heat_patches import ALL_LAYERS, INNER, OUTER
+from tyrefem.diagnose.unknowns.unknown import Unknown
+from tyrefem.diagnose.words.heat import course_words, inside_share, is_told
 
 Array = NDArray[np.float64]
 TIMES = np.linspace(15.0, 900.0, 60)

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 from hidden import measure, study
 
-from tyrefem.diagnose.heat_words import inside_share
-from tyrefem.diagnose.verdict import IDENTIFIED, PARTLY, UNEXPLAINED
-from tyrefem.diagnose.words import missing_heat_words, verdict_words
+from tyrefem.diagnose.verdicts.verdict import IDENTIFIED, PARTLY, UNEXPLAINED
+from tyrefem.diagnose.words.heat import inside_share
+from tyrefem.diagnose.words.sentences import missing_heat_words, verdict_words
 from tyrefem.reports.diagnosis_law import leading_signatures
 from tyrefem.reports.diagnosis_missing import by_run, drawn_sources
 

@@ -15,10 +15,10 @@ from hidden import FINISHED, HELD_OUT, NOISE, RUNS, WARMER, Case
 
 import tyrefem as tf
 from tyrefem.cli import main
-from tyrefem.diagnose.evaluations import ProgressStore, key_of
-from tyrefem.diagnose.forward_model import ForwardModel
-from tyrefem.diagnose.unknowns import base_unknowns, sensor_unknowns, with_values
-from tyrefem.diagnose.words import verdict_words
+from tyrefem.diagnose.forward.evaluations import ProgressStore, key_of
+from tyrefem.diagnose.forward.forward_model import ForwardModel
+from tyrefem.diagnose.unknowns.unknown import base_unknowns, sensor_unknowns, with_values
+from tyrefem.diagnose.words.sentences import verdict_words
 from tyrefem.measured import MeasuredRun
 from tyrefem.variants.answer_store import PROGRESS
 
@@ -238,9 +238,9 @@ def test_noise_alone_is_no_gap(case: Case) -> None:
 
 def test_python_can_start_workers_and_they_agree(case: Case) -> None:
     code = (
-        "import sys; import tyrefem as tf; from tyrefem.diagnose.forward_model import ForwardModel\n"
-        "from tyrefem.diagnose.evaluations import evaluating\n"
-        "from tyrefem.compare.experiment import experiments; from tyrefem.diagnose.runs import measured_drive\n"
+        "import sys; import tyrefem as tf; from tyrefem.diagnose.forward.forward_model import ForwardModel\n"
+        "from tyrefem.diagnose.forward.evaluations import evaluating\n"
+        "from tyrefem.compare.experiment import experiments; from tyrefem.diagnose.data.runs import measured_drive\n"
         "if __name__ == '__main__':\n"
         "    study = tf.study(sys.argv[1])\n"
         "    model = ForwardModel(study, tuple(measured_drive(one, study).sampling for one in experiments(study)))\n"

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 import tyrefem as tf
-from tyrefem.diagnose.candidates import catalogue_candidates
-from tyrefem.diagnose.evaluations import Evaluations
-from tyrefem.diagnose.forward_model import FOLLOWED, ForwardModel
-from tyrefem.diagnose.isolability import planned
-from tyrefem.diagnose.sensitivities import responses, unknowns_of
+from tyrefem.diagnose.data.sensitivities import responses, unknowns_of
+from tyrefem.diagnose.forward.evaluations import Evaluations
+from tyrefem.diagnose.forward.forward_model import FOLLOWED, ForwardModel
+from tyrefem.diagnose.layout.isolability import planned
 from tyrefem.diagnose.settings import DiagnosisSettings
+from tyrefem.diagnose.unknowns.candidates import catalogue_candidates
 
 
 def test_a_second_swap_of_a_sensor_has_no_column_by_either_model() -> None:

@@ -12,12 +12,12 @@ from hidden import RIVALS, RUNS, Case
 from typer.testing import CliRunner
 
 from tyrefem.cli import app
-from tyrefem.diagnose.candidates import Candidate, SetPrior
-from tyrefem.diagnose.discrepancy import other_structure
-from tyrefem.diagnose.energy_shapes import SHAPE
-from tyrefem.diagnose.evaluations import Evaluations
-from tyrefem.diagnose.forward_model import ForwardModel
-from tyrefem.diagnose.isolability import (
+from tyrefem.diagnose.beside.discrepancy import other_structure
+from tyrefem.diagnose.data.sensitivities import Sensitivities
+from tyrefem.diagnose.forward.evaluations import Evaluations
+from tyrefem.diagnose.forward.forward_model import ForwardModel
+from tyrefem.diagnose.inference.linear_model import LinearModel
+from tyrefem.diagnose.layout.isolability import (
     MARGIN,
     Isolability,
     competitors_of,
@@ -26,9 +26,9 @@ from tyrefem.diagnose.isolability import (
     margins,
     planned,
 )
-from tyrefem.diagnose.linear_model import LinearModel
-from tyrefem.diagnose.sensitivities import Sensitivities
-from tyrefem.diagnose.unknowns import of_effect
+from tyrefem.diagnose.unknowns.candidates import Candidate, SetPrior
+from tyrefem.diagnose.unknowns.energy_shapes import SHAPE
+from tyrefem.diagnose.unknowns.unknown import of_effect
 from tyrefem.effects import catalogue
 from tyrefem.inputs.name_patterns import SCALES
 
@@ -118,7 +118,7 @@ def test_the_printed_table_has_the_units_of_study_files(isolability_result: Isol
 def test_the_command_calibrates_a_layout(
     case: Case, known: Sensitivities, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("tyrefem.diagnose.isolability.planned_sensitivities", lambda *_, **__: known)
+    monkeypatch.setattr("tyrefem.diagnose.layout.isolability.planned_sensitivities", lambda *_, **__: known)
     out = tmp_path / "out"
     arguments = ["isolability", str(case.study.file), "--calibrate", "60", "--out", str(out)]
     result = CliRunner().invoke(app, arguments)

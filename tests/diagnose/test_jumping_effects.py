@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import tyrefem as tf
-from tyrefem.diagnose.fixed_step import fixed_step_run, on_grid
+from tyrefem.diagnose.forward.fixed_step import fixed_step_run, on_grid
 
 Array = NDArray[np.float64]
 ENDS = 250.0

@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 from formula import STATED, Array, Case, case, effect, slopes
 
-from tyrefem.diagnose.candidates import Members, SetPrior
-from tyrefem.diagnose.criterion import LogEvidence
-from tyrefem.diagnose.fits import FittedSet
-from tyrefem.diagnose.forward_selection import ForwardSelection
-from tyrefem.diagnose.selection import ScoredSet, SelectionProblem
+from tyrefem.diagnose.fitting.criterion import LogEvidence
+from tyrefem.diagnose.fitting.fits import FittedSet
+from tyrefem.diagnose.fitting.forward_selection import ForwardSelection
+from tyrefem.diagnose.fitting.selection import ScoredSet, SelectionProblem
 from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
-from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, judge, ranked
+from tyrefem.diagnose.unknowns.candidates import Members, SetPrior
+from tyrefem.diagnose.verdicts.verdict import CONFOUNDED, IDENTIFIED, judge, ranked
 
 N = 80
 T = np.linspace(0.05, 1.0, N)

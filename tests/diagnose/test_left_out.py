@@ -10,10 +10,10 @@ import pytest
 from hidden import measure, study
 
 import tyrefem as tf
-from tyrefem.diagnose.candidates import Candidate, beside_rolling, catalogue_candidates, possible
-from tyrefem.diagnose.forward_model import ForwardModel
+from tyrefem.diagnose.forward.forward_model import ForwardModel
 from tyrefem.diagnose.settings import DiagnosisSettings
-from tyrefem.diagnose.unknowns import of_effect
+from tyrefem.diagnose.unknowns.candidates import Candidate, beside_rolling, catalogue_candidates, possible
+from tyrefem.diagnose.unknowns.unknown import of_effect
 from tyrefem.effects import catalogue
 from tyrefem.effects.hot_road import HotRoad
 from tyrefem.errors import InputError

@@ -12,13 +12,13 @@ from formula import STATED, Array, case, effect
 from hidden import RUNS
 from hidden import Case as HiddenCase
 
-from tyrefem.diagnose.candidates import SetPrior
-from tyrefem.diagnose.criterion import LogEvidence
-from tyrefem.diagnose.exhaustive import Exhaustive
-from tyrefem.diagnose.materiality import movements
-from tyrefem.diagnose.selection import SelectionProblem
-from tyrefem.diagnose.verdict import IDENTIFIED, NO_GAP, Judgement, judge, ranked, without_immaterial
-from tyrefem.diagnose.words import verdict_words
+from tyrefem.diagnose.fitting.criterion import LogEvidence
+from tyrefem.diagnose.fitting.exhaustive import Exhaustive
+from tyrefem.diagnose.fitting.materiality import movements
+from tyrefem.diagnose.fitting.selection import SelectionProblem
+from tyrefem.diagnose.unknowns.candidates import SetPrior
+from tyrefem.diagnose.verdicts.verdict import IDENTIFIED, NO_GAP, Judgement, judge, ranked, without_immaterial
+from tyrefem.diagnose.words.sentences import verdict_words
 
 N = 400
 T = np.linspace(0.0, 1.0, N)

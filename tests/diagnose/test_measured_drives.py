@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tyrefem.diagnose.residual_tables import stretches
-from tyrefem.diagnose.runs import MeasuredDrive, MeasuredSensor
+from tyrefem.diagnose.data.residual_tables import stretches
+from tyrefem.diagnose.data.runs import MeasuredDrive, MeasuredSensor
 from tyrefem.diagnose.settings import DEFAULT
 
 

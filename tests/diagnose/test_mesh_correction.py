@@ -8,9 +8,9 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
-from tyrefem.diagnose.residuals import Residuals
-from tyrefem.diagnose.runs import MeasuredDrive
-from tyrefem.diagnose.sensitivities import Sensitivities
+from tyrefem.diagnose.data.residuals import Residuals
+from tyrefem.diagnose.data.runs import MeasuredDrive
+from tyrefem.diagnose.data.sensitivities import Sensitivities
 
 START = 25.0
 #: A sensor near the surface that hardly warms, in a steep gradient; two inside. Rise, and what the mesh adds, K.

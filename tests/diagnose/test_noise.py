@@ -7,8 +7,8 @@ import pandas as pd
 import pytest
 from hidden import Case
 
-from tyrefem.diagnose.noise import ReadingNoise, noise_of
-from tyrefem.diagnose.runs import MeasuredDrive, MeasuredSensor, with_noise_of_data
+from tyrefem.diagnose.data.noise import ReadingNoise, noise_of
+from tyrefem.diagnose.data.runs import MeasuredDrive, MeasuredSensor, with_noise_of_data
 from tyrefem.measured import MeasuredRun
 
 SENSORS = ("crown", "shoulder", "sidewall", "bead")

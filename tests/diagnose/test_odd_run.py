@@ -16,15 +16,15 @@ from hidden import END, NOISE, RUNS, study
 
 import tyrefem as tf
 from tyrefem.api import DiagnosisRecord
-from tyrefem.diagnose.candidates import SetPrior, catalogue_candidates, in_single_runs, separate
 from tyrefem.diagnose.diagnosis import DiagnosisData
-from tyrefem.diagnose.forward_model import FOLLOWED, ForwardModel
+from tyrefem.diagnose.fitting.selection import sets_of
+from tyrefem.diagnose.forward.forward_model import FOLLOWED, ForwardModel
 from tyrefem.diagnose.options import Method
-from tyrefem.diagnose.selection import sets_of
 from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
-from tyrefem.diagnose.unknowns import base_unknowns
-from tyrefem.diagnose.verdict import UNEXPLAINED
-from tyrefem.diagnose.words import verdict_words
+from tyrefem.diagnose.unknowns.candidates import SetPrior, catalogue_candidates, in_single_runs, separate
+from tyrefem.diagnose.unknowns.unknown import base_unknowns
+from tyrefem.diagnose.verdicts.verdict import UNEXPLAINED
+from tyrefem.diagnose.words.sentences import verdict_words
 
 COARSE = DiagnosisSettings(mesh_size="8 mm", largest=3, looks=2)
 HOT: dict[str, Any] = {"name": "hot-road", "warmer_by": "25 delta_degC"}

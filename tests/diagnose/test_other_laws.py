@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 from hidden import study
 
-from tyrefem.diagnose.forward_model import ForwardModel
-from tyrefem.diagnose.sampling import DriveSampling, SensorSampling
+from tyrefem.diagnose.forward.forward_model import ForwardModel
+from tyrefem.diagnose.forward.sampling import DriveSampling, SensorSampling
 from tyrefem.diagnose.settings import DiagnosisSettings
 
 TIMES = np.arange(0.0, 160.0, 8.0)

@@ -11,8 +11,8 @@ import pytest
 from numpy.typing import NDArray
 
 import tyrefem as tf
-from tyrefem.diagnose.blind import STRUCTURAL, BlindCase, cases, measured, mesh_of, other_model
-from tyrefem.diagnose.other_model import (
+from tyrefem.diagnose.blind.blind_case import STRUCTURAL, BlindCase, cases, measured, mesh_of, other_model
+from tyrefem.diagnose.blind.other_model import (
     OUTSIDE_FILM,
     ROAD_FILM,
     OtherModel,
@@ -21,7 +21,7 @@ from tyrefem.diagnose.other_model import (
     other_law,
     rms_of_modes,
 )
-from tyrefem.diagnose.synthetic import Logger, theta_steps
+from tyrefem.diagnose.blind.synthetic import Logger, theta_steps
 from tyrefem.inputs.study import StudyData
 from tyrefem.mechanics.cycle_schedule import cycle_schedule
 from tyrefem.simulation.rolling_tyre import RollingTyre

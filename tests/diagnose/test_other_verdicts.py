@@ -13,12 +13,10 @@ from formula import effect
 from hidden import Case
 from made_up import confounded, judged, unexplained
 
-from tyrefem.diagnose.candidates import SetPrior
-from tyrefem.diagnose.criterion import LogEvidence
-from tyrefem.diagnose.heat_words import NOT_CLEAR
-from tyrefem.diagnose.result_tables import competing_sets, inclusion_probability
-from tyrefem.diagnose.selection import ScoredSet, SelectionProblem
-from tyrefem.diagnose.verdict import (
+from tyrefem.diagnose.fitting.criterion import LogEvidence
+from tyrefem.diagnose.fitting.selection import ScoredSet, SelectionProblem
+from tyrefem.diagnose.unknowns.candidates import SetPrior
+from tyrefem.diagnose.verdicts.verdict import (
     CONFOUNDED,
     IDENTIFIED,
     NO_GAP,
@@ -27,7 +25,9 @@ from tyrefem.diagnose.verdict import (
     judge,
     ranked,
 )
-from tyrefem.diagnose.words import effect_words, verdict_words
+from tyrefem.diagnose.words.heat import NOT_CLEAR
+from tyrefem.diagnose.words.result_tables import competing_sets, inclusion_probability
+from tyrefem.diagnose.words.sentences import effect_words, verdict_words
 
 
 def test_confounded_names_the_rivals_and_what_would_decide(case: Case, tmp_path: Path) -> None:

@@ -10,10 +10,10 @@ from hidden import WARMER, measure, study
 
 import tyrefem as tf
 from tyrefem.diagnose import DiagnosisData
-from tyrefem.diagnose.headline import headline
-from tyrefem.diagnose.prior_sensitivity import FACTORS, PROBABILITY
-from tyrefem.diagnose.verdict import PARTLY
-from tyrefem.diagnose.words import missing_heat_words, verdict_words
+from tyrefem.diagnose.verdicts.prior_sensitivity import FACTORS, PROBABILITY
+from tyrefem.diagnose.verdicts.verdict import PARTLY
+from tyrefem.diagnose.words.headline import headline
+from tyrefem.diagnose.words.sentences import missing_heat_words, verdict_words
 from tyrefem.reports.diagnosis_missing import tells_missing_heat
 
 #: Half waves of ln(heat) along the meridian: up to 65 % more heat at the crown, less at the sidewall.

@@ -12,11 +12,15 @@ import pytest
 from formula import STATED, Case, effect
 from formula import case as case_of
 
-from tyrefem.diagnose.candidates import Candidate, Members, SetPrior
-from tyrefem.diagnose.criterion import LogEvidence
-from tyrefem.diagnose.exhaustive import Exhaustive
-from tyrefem.diagnose.fits import FittedSet
-from tyrefem.diagnose.prior_sensitivity import (
+from tyrefem.diagnose.beside.robustness import Robustness, UnderDiscrepancy
+from tyrefem.diagnose.fitting.criterion import LogEvidence
+from tyrefem.diagnose.fitting.exhaustive import Exhaustive
+from tyrefem.diagnose.fitting.fits import FittedSet
+from tyrefem.diagnose.fitting.selection import ScoredSet, SelectionProblem
+from tyrefem.diagnose.settings import DEFAULT
+from tyrefem.diagnose.unknowns.candidates import Candidate, Members, SetPrior
+from tyrefem.diagnose.unknowns.unknown import Unknown
+from tyrefem.diagnose.verdicts.prior_sensitivity import (
     AMPLITUDE,
     FACTORS,
     PROBABILITY,
@@ -26,11 +30,7 @@ from tyrefem.diagnose.prior_sensitivity import (
     prior_sensitivity,
     prior_words,
 )
-from tyrefem.diagnose.robustness import Robustness, UnderDiscrepancy
-from tyrefem.diagnose.selection import ScoredSet, SelectionProblem
-from tyrefem.diagnose.settings import DEFAULT
-from tyrefem.diagnose.unknowns import Unknown
-from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, UNEXPLAINED, Judgement, judge, ranked
+from tyrefem.diagnose.verdicts.verdict import CONFOUNDED, IDENTIFIED, UNEXPLAINED, Judgement, judge, ranked
 
 T = np.linspace(0.0, 1.0, 40)
 SETTINGS = replace(DEFAULT, largest=1)

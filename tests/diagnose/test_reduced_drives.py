@@ -14,18 +14,18 @@ from numpy.typing import NDArray
 import tyrefem as tf
 from tyrefem.compare.experiment import experiments
 from tyrefem.diagnose import DiagnosisData
-from tyrefem.diagnose.candidates import Candidate, catalogue_candidates
-from tyrefem.diagnose.criterion import BIC
-from tyrefem.diagnose.evaluations import Evaluations
-from tyrefem.diagnose.exhaustive import Exhaustive
-from tyrefem.diagnose.forward_model import FOLLOWED, NO_ANSWER, NOT_FOLLOWED, DriveResponse, ForwardModel
-from tyrefem.diagnose.multifidelity import DriveCertificate, Predictions
-from tyrefem.diagnose.reduced_forward import Modes, ReducedDrive
-from tyrefem.diagnose.runs import measured_drive
-from tyrefem.diagnose.sensitivities import responses, unknowns_of
+from tyrefem.diagnose.data.runs import measured_drive
+from tyrefem.diagnose.data.sensitivities import responses, unknowns_of
+from tyrefem.diagnose.fitting.criterion import BIC
+from tyrefem.diagnose.fitting.exhaustive import Exhaustive
+from tyrefem.diagnose.forward.evaluations import Evaluations
+from tyrefem.diagnose.forward.forward_model import FOLLOWED, NO_ANSWER, NOT_FOLLOWED, DriveResponse, ForwardModel
+from tyrefem.diagnose.forward.multifidelity import DriveCertificate, Predictions
+from tyrefem.diagnose.forward.reduced_drive import Modes, ReducedDrive
 from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
-from tyrefem.diagnose.unknowns import Unknown, with_values
-from tyrefem.diagnose.verdict import NO_GAP, UNEXPLAINED, Judgement, RankedSet
+from tyrefem.diagnose.unknowns.candidates import Candidate, catalogue_candidates
+from tyrefem.diagnose.unknowns.unknown import Unknown, with_values
+from tyrefem.diagnose.verdicts.verdict import NO_GAP, UNEXPLAINED, Judgement, RankedSet
 from tyrefem.diagnose.workflow import Ranking, allowed_error
 from tyrefem.effects import catalogue
 

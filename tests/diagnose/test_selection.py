@@ -10,12 +10,12 @@ import pytest
 from formula import STATED, Array, Case, case, effect
 
 import tyrefem as tf
-from tyrefem.diagnose.candidates import Members, SetPrior
-from tyrefem.diagnose.criterion import BIC, Criterion, LogEvidence
-from tyrefem.diagnose.exhaustive import Exhaustive
-from tyrefem.diagnose.forward_selection import ForwardSelection
-from tyrefem.diagnose.selection import ScoredSet, SelectionProblem, Strategy, sets_of
+from tyrefem.diagnose.fitting.criterion import BIC, Criterion, LogEvidence
+from tyrefem.diagnose.fitting.exhaustive import Exhaustive
+from tyrefem.diagnose.fitting.forward_selection import ForwardSelection
+from tyrefem.diagnose.fitting.selection import ScoredSet, SelectionProblem, Strategy, sets_of
 from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
+from tyrefem.diagnose.unknowns.candidates import Members, SetPrior
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
 

@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 from formula import STATED, case, effect
 
-from tyrefem.diagnose.candidates import SetPrior
-from tyrefem.diagnose.criterion import LogEvidence
-from tyrefem.diagnose.exhaustive import Exhaustive
-from tyrefem.diagnose.fits import FittedSet
-from tyrefem.diagnose.result_tables import parameters
-from tyrefem.diagnose.robustness import Robustness, UnderDiscrepancy
-from tyrefem.diagnose.selection import SelectionProblem
+from tyrefem.diagnose.beside.robustness import Robustness, UnderDiscrepancy
+from tyrefem.diagnose.fitting.criterion import LogEvidence
+from tyrefem.diagnose.fitting.exhaustive import Exhaustive
+from tyrefem.diagnose.fitting.fits import FittedSet
+from tyrefem.diagnose.fitting.selection import SelectionProblem
 from tyrefem.diagnose.settings import DEFAULT
+from tyrefem.diagnose.unknowns.candidates import SetPrior
+from tyrefem.diagnose.words.result_tables import parameters
 
 T = np.linspace(0.0, 1.0, 40)
 

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from hidden import Case
 
-from tyrefem.diagnose.candidates import catalogue_candidates
-from tyrefem.diagnose.forward_model import ForwardModel
-from tyrefem.diagnose.unknowns import Unknown, base_unknowns
+from tyrefem.diagnose.forward.forward_model import ForwardModel
+from tyrefem.diagnose.unknowns.candidates import catalogue_candidates
+from tyrefem.diagnose.unknowns.unknown import Unknown, base_unknowns
 
 #: Effect -> x of its unknown: where the tangents are taken.
 AT = {

@@ -10,17 +10,17 @@ from hidden import Case
 from made_up import unexplained
 
 from tyrefem.diagnose import DiagnosisData
-from tyrefem.diagnose.blind import outcome_row
-from tyrefem.diagnose.discrepancy import ENERGY, READINGS
-from tyrefem.diagnose.discrepancy_record import possible_effects
-from tyrefem.diagnose.energy_shapes import energy_shapes
-from tyrefem.diagnose.evidence import Posterior
-from tyrefem.diagnose.fits import FittedSet
-from tyrefem.diagnose.headline import headline
-from tyrefem.diagnose.partly_words import MOST, explaining_words
-from tyrefem.diagnose.record import record
-from tyrefem.diagnose.robustness import Robustness, UnderDiscrepancy
-from tyrefem.diagnose.words import verdict_words
+from tyrefem.diagnose.beside.discrepancy import ENERGY, READINGS
+from tyrefem.diagnose.beside.robustness import Robustness, UnderDiscrepancy
+from tyrefem.diagnose.blind.blind_case import outcome_row
+from tyrefem.diagnose.fitting.fits import FittedSet
+from tyrefem.diagnose.inference.evidence import Posterior
+from tyrefem.diagnose.unknowns.energy_shapes import energy_shapes
+from tyrefem.diagnose.words.discrepancy_record import possible_effects
+from tyrefem.diagnose.words.headline import headline
+from tyrefem.diagnose.words.partly import MOST, explaining_words
+from tyrefem.diagnose.words.record import record
+from tyrefem.diagnose.words.sentences import verdict_words
 
 
 def beside_energy(d: DiagnosisData, left: float) -> FittedSet:

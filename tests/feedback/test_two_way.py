@@ -178,7 +178,7 @@ def test_an_effect_that_would_count_twice_is_refused() -> None:
 
 
 def test_a_diagnosis_of_a_study_with_feedback_is_refused() -> None:
-    from tyrefem.diagnose.fixed_step import fixed_step_run
+    from tyrefem.diagnose.forward.fixed_step import fixed_step_run
 
     with pytest.raises(InputError, match=r"mechanics.feedback: only a run computes"):
         fixed_step_run(coupled().study)

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 from script_module import script_module
 
-from tyrefem.diagnose.blind_rates import Blind
+from tyrefem.diagnose.blind.rates import Blind
 
 ROOT = Path(__file__).resolve().parents[2]
 MODEL = {"strain_law": None, "strain_modes_rms": 0.25, "film_speed_exponents": {}}

@@ -8,8 +8,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from tyrefem.diagnose.set_posteriors import SetPosterior
-from tyrefem.diagnose.unknowns import Unknown
+from tyrefem.diagnose.unknowns.unknown import Unknown
+from tyrefem.diagnose.words.set_posteriors import SetPosterior
 from tyrefem.inputs.plan_choice import PlanChoice
 from tyrefem.inputs.study import study
 from tyrefem.plan.batch import LEAST_GAIN, greedy_batch

@@ -13,11 +13,11 @@ import tomli_w
 
 import tyrefem as tf
 from tyrefem.cli import main
-from tyrefem.diagnose.candidates import catalogue_candidates
-from tyrefem.diagnose.evaluations import Evaluations
-from tyrefem.diagnose.forward_model import ForwardModel
-from tyrefem.diagnose.sampling import DriveSampling
-from tyrefem.diagnose.sensitivities import responses, unknowns_of
+from tyrefem.diagnose.data.sensitivities import responses, unknowns_of
+from tyrefem.diagnose.forward.evaluations import Evaluations
+from tyrefem.diagnose.forward.forward_model import ForwardModel
+from tyrefem.diagnose.forward.sampling import DriveSampling
+from tyrefem.diagnose.unknowns.candidates import catalogue_candidates
 from tyrefem.effects import catalogue
 from tyrefem.plan.drives import candidate_drives
 from tyrefem.plan.workflow import rival_of

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from tyrefem.cli import main
-from tyrefem.diagnose.forward_model import ForwardModel
+from tyrefem.diagnose.forward.forward_model import ForwardModel
 
 
 @pytest.fixture(autouse=True)

@@ -10,8 +10,8 @@ import pytest
 from odd_studies import FITTED, write
 
 import tyrefem as tf
-from tyrefem.diagnose.blind import cases
-from tyrefem.diagnose.blind_rates import Blind, run_blind
+from tyrefem.diagnose.blind.blind_case import cases
+from tyrefem.diagnose.blind.rates import Blind, run_blind
 from tyrefem.reports.blind import picture, save
 
 #: Of the synthetic data.

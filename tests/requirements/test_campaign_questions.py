@@ -13,8 +13,8 @@ from odd_studies import FITTED, HELD_OUT, write
 
 import tyrefem as tf
 from tyrefem.cli import app, main
-from tyrefem.diagnose.blind_rates import run_blind
-from tyrefem.diagnose.isolability import isolability
+from tyrefem.diagnose.blind.rates import run_blind
+from tyrefem.diagnose.layout.isolability import isolability
 from tyrefem.errors import InputError
 from tyrefem.mechanics.footprint.press import press
 from tyrefem.realtime.certificate import export

@@ -11,10 +11,10 @@ import pytest
 from odd_studies import END, FITTED, HELD_OUT, SENSORS, table, write
 
 import tyrefem as tf
-from tyrefem.diagnose.candidates import catalogue_candidates
-from tyrefem.diagnose.forward_model import ForwardModel
-from tyrefem.diagnose.isolability import isolability, planned
+from tyrefem.diagnose.forward.forward_model import ForwardModel
+from tyrefem.diagnose.layout.isolability import isolability, planned
 from tyrefem.diagnose.next_experiment import drive_gain
+from tyrefem.diagnose.unknowns.candidates import catalogue_candidates
 from tyrefem.errors import InputError
 
 pytestmark = pytest.mark.fast

@@ -11,9 +11,9 @@ import numpy as np
 import pandas as pd
 
 import tyrefem as tf
-from tyrefem.diagnose.blind import BlindCase, measured
-from tyrefem.diagnose.candidates import catalogue_candidates
-from tyrefem.diagnose.unknowns import base_unknowns, sensor_unknowns
+from tyrefem.diagnose.blind.blind_case import BlindCase, measured
+from tyrefem.diagnose.unknowns.candidates import catalogue_candidates
+from tyrefem.diagnose.unknowns.unknown import base_unknowns, sensor_unknowns
 
 HIDDEN, AMPLITUDE = "gas-mixing", 1.6
 SEED = 20261121

@@ -10,10 +10,10 @@ import pandas as pd
 import pytest
 
 import tyrefem as tf
-from tyrefem.diagnose.candidates import Candidate, catalogue_candidates
-from tyrefem.diagnose.headline import headline
 from tyrefem.diagnose.settings import DiagnosisSettings
-from tyrefem.diagnose.verdict import PARTLY
+from tyrefem.diagnose.unknowns.candidates import Candidate, catalogue_candidates
+from tyrefem.diagnose.verdicts.verdict import PARTLY
+from tyrefem.diagnose.words.headline import headline
 from tyrefem.inputs.study import StudyData
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -21,7 +21,7 @@ sys.path.insert(0, str(ROOT / "tools"))
 
 from make_structural_table import HIDDEN, MODES, STUDY, WARMER, table  # noqa: E402
 
-from tyrefem.diagnose.other_model import rms_of_modes  # noqa: E402
+from tyrefem.diagnose.blind.other_model import rms_of_modes  # noqa: E402
 
 #: Few candidates make a short test; all of them change the tread.
 FEW = ("hot-road", "sun", "worn-tread")

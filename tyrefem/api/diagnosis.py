@@ -27,34 +27,34 @@ class Diagnosis(diagnosis.DiagnosisData):
     @cached_property
     def label(self) -> str:
         """The verdict as people read it: "no gap after corrections" if the original study deviates clearly."""
-        from tyrefem.diagnose.headline import label
+        from tyrefem.diagnose.words.headline import label
 
         return label(self)
 
     @cached_property
     def headline(self) -> tuple[str, str, str]:
         """What is wrong, how sure, and what to do next, a sentence each."""
-        from tyrefem.diagnose.headline import headline
+        from tyrefem.diagnose.words.headline import headline
 
         return headline(self)
 
     @cached_property
     def words(self) -> tuple[str, ...]:
         """The verdict in more sentences: amounts, strain laws, missing heat and its law, priors, noise."""
-        from tyrefem.diagnose.words import verdict_words
+        from tyrefem.diagnose.words.sentences import verdict_words
 
         return verdict_words(self)
 
     @cached_property
     def confidence(self) -> float:
         """Smallest probability of a named effect, also without one sensor or run; NaN without a name."""
-        from tyrefem.diagnose.discrepancy_record import confidence
+        from tyrefem.diagnose.words.discrepancy_record import confidence
 
         return confidence(self)
 
     def to_dict(self) -> dict[str, Any]:
         """Contents of `verdict.json`."""
-        from tyrefem.diagnose.record import record
+        from tyrefem.diagnose.words.record import record
 
         return record(self)
 

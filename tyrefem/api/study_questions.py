@@ -18,12 +18,12 @@ if TYPE_CHECKING:
     from tyrefem.api.exploration import Exploration
     from tyrefem.compare.interface import ResultLike
     from tyrefem.compare.reduced_inputs import ReducedInputSettings
-    from tyrefem.diagnose.candidates import CandidateSpace
-    from tyrefem.diagnose.criterion import Criterion
-    from tyrefem.diagnose.evaluations import ProgressStore
-    from tyrefem.diagnose.forward_model import DriveResponse
-    from tyrefem.diagnose.selection import Strategy
+    from tyrefem.diagnose.fitting.criterion import Criterion
+    from tyrefem.diagnose.fitting.selection import Strategy
+    from tyrefem.diagnose.forward.evaluations import ProgressStore
+    from tyrefem.diagnose.forward.forward_model import DriveResponse
     from tyrefem.diagnose.settings import DiagnosisSettings
+    from tyrefem.diagnose.unknowns.candidates import CandidateSpace
     from tyrefem.variants.answer_store import AnswerStore
     from tyrefem.variants.execution import Scheduler, SweepSettings
 

@@ -23,7 +23,7 @@ from tyrefem.output.folder import results_folder
 
 
 def _data_model(name: str) -> str:
-    from tyrefem.diagnose.blind_rates import checked_model
+    from tyrefem.diagnose.blind.rates import checked_model
 
     return checked_model(name, "--truth")
 
@@ -48,7 +48,7 @@ def blind(
     Finished cases are kept: the same command continues an interrupted one.
     """
     from tyrefem.api import study as load
-    from tyrefem.diagnose.blind_rates import NEEDS, run_blind
+    from tyrefem.diagnose.blind.rates import NEEDS, run_blind
     from tyrefem.reports.blind import FILES, save
     from tyrefem.variants.answer_store import PROGRESS
 

@@ -66,7 +66,7 @@ def diagnose(
     The same command continues an interrupted one.
     """
     from tyrefem.api import study as load
-    from tyrefem.diagnose.evaluations import ProgressStore
+    from tyrefem.diagnose.forward.evaluations import ProgressStore
     from tyrefem.diagnose.options import STRATEGIES
     from tyrefem.diagnose.workflow import NEEDS
     from tyrefem.effects import use_effects
@@ -103,9 +103,9 @@ def diagnose(
             page = diagnosis.save(folder)
         store.clear()
     answer_with(diagnosis.to_dict())
-    from tyrefem.diagnose.draft_effect import EFFECTS, draft_effects
-    from tyrefem.diagnose.headline import QUESTIONS, headline, label
-    from tyrefem.diagnose.words import missing_heat_words, noise_words
+    from tyrefem.diagnose.words.draft_effect import EFFECTS, draft_effects
+    from tyrefem.diagnose.words.headline import QUESTIONS, headline, label
+    from tyrefem.diagnose.words.sentences import missing_heat_words, noise_words
 
     if store.resumed:
         say(f"{store.resumed} simulations of an interrupted diagnosis were reused")

@@ -44,10 +44,10 @@ def isolability(
     With --calibrate N, N quick cases test the probabilities that a diagnosis would state.
     """
     from tyrefem.api import study as load
-    from tyrefem.diagnose.calibration import calibrated
-    from tyrefem.diagnose.evaluations import ProgressStore
-    from tyrefem.diagnose.isolability import NEEDS, planned_sensitivities
-    from tyrefem.diagnose.isolability import isolability as found_by
+    from tyrefem.diagnose.forward.evaluations import ProgressStore
+    from tyrefem.diagnose.layout.calibration import calibrated
+    from tyrefem.diagnose.layout.isolability import NEEDS, planned_sensitivities
+    from tyrefem.diagnose.layout.isolability import isolability as found_by
     from tyrefem.output import atomic_folder, jsonable
     from tyrefem.reports.calibration import save
     from tyrefem.reports.isolability import picture

@@ -51,8 +51,8 @@ def plan(
     Limits and costs stand in the study's [plan] table. The same command continues an interrupted one.
     """
     from tyrefem.api import study as load
-    from tyrefem.diagnose.evaluations import ProgressStore
-    from tyrefem.diagnose.set_posteriors import POSTERIOR
+    from tyrefem.diagnose.forward.evaluations import ProgressStore
+    from tyrefem.diagnose.words.set_posteriors import POSTERIOR
     from tyrefem.plan.workflow import NEEDS
     from tyrefem.reports.plan import FILES
     from tyrefem.variants.answer_store import PROGRESS

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from tyrefem.diagnose.residuals import Residuals
-from tyrefem.diagnose.unknowns import Unknown, with_values
+from tyrefem.diagnose.data.residuals import Residuals
+from tyrefem.diagnose.unknowns.unknown import Unknown, with_values
 from tyrefem.inputs.changes import scaled, value_at
 from tyrefem.inputs.study import StudyData
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+from tyrefem.diagnose.beside.law_trials import BetterLaw, LawTrial, stated_law
 from tyrefem.diagnose.diagnosis import DiagnosisData
-from tyrefem.diagnose.law_trials import BetterLaw, LawTrial, stated_law
-from tyrefem.diagnose.verdict import NO_GAP, UNEXPLAINED
+from tyrefem.diagnose.verdicts.verdict import NO_GAP, UNEXPLAINED
 
 #: Another law is taken if its ln evidence is ahead by this, over all sets of effects and discrepancies.
 CLEARLY = 10.0

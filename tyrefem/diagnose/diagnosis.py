@@ -11,28 +11,28 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tyrefem.brief import Brief
-from tyrefem.diagnose.candidates import SetPrior
+from tyrefem.diagnose.data.residual_tables import residual_table, rms
 from tyrefem.diagnose.numbers import percent
-from tyrefem.diagnose.prior_sensitivity import PriorChange, prior_sensitivity
-from tyrefem.diagnose.residual_tables import residual_table, rms
+from tyrefem.diagnose.unknowns.candidates import SetPrior
+from tyrefem.diagnose.verdicts.prior_sensitivity import PriorChange, prior_sensitivity
 
 if TYPE_CHECKING:
     import pandas as pd
 
     from tyrefem.diagnose.amend import Change
-    from tyrefem.diagnose.candidates import Candidate
-    from tyrefem.diagnose.conformal import ConformalCalibration
-    from tyrefem.diagnose.fits import FittedSet
-    from tyrefem.diagnose.law_search import HeatLaw
-    from tyrefem.diagnose.law_signatures import LawSignature
-    from tyrefem.diagnose.law_trials import BetterLaw, LawTrial
-    from tyrefem.diagnose.materiality import Movement
-    from tyrefem.diagnose.missing_heat import UnknownHeat
-    from tyrefem.diagnose.residuals import Residuals
-    from tyrefem.diagnose.robustness import Robustness
-    from tyrefem.diagnose.runs import MeasuredSensor
-    from tyrefem.diagnose.support import Support
-    from tyrefem.diagnose.verdict import Judgement
+    from tyrefem.diagnose.beside.law_trials import BetterLaw, LawTrial
+    from tyrefem.diagnose.beside.robustness import Robustness
+    from tyrefem.diagnose.data.residuals import Residuals
+    from tyrefem.diagnose.data.runs import MeasuredSensor
+    from tyrefem.diagnose.fitting.fits import FittedSet
+    from tyrefem.diagnose.fitting.materiality import Movement
+    from tyrefem.diagnose.fitting.support import Support
+    from tyrefem.diagnose.heat.missing_heat import UnknownHeat
+    from tyrefem.diagnose.law.search import HeatLaw
+    from tyrefem.diagnose.law.signatures import LawSignature
+    from tyrefem.diagnose.layout.conformal import ConformalCalibration
+    from tyrefem.diagnose.unknowns.candidates import Candidate
+    from tyrefem.diagnose.verdicts.verdict import Judgement
     from tyrefem.inputs.study import StudyData
 
 

@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.diagnose.candidates import Members
-from tyrefem.diagnose.fits import FittedSet
-from tyrefem.diagnose.fixed_step import FixedStepRun
-from tyrefem.diagnose.forward_model import ForwardModel
-from tyrefem.diagnose.sampling import DriveSampling, SensorSampling
-from tyrefem.diagnose.verdict import Judgement, RankedSet
+from tyrefem.diagnose.fitting.fits import FittedSet
+from tyrefem.diagnose.forward.fixed_step import FixedStepRun
+from tyrefem.diagnose.forward.forward_model import ForwardModel
+from tyrefem.diagnose.forward.sampling import DriveSampling, SensorSampling
+from tyrefem.diagnose.unknowns.candidates import Members
+from tyrefem.diagnose.verdicts.verdict import Judgement, RankedSet
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
 from tyrefem.simulation.surroundings import GAS

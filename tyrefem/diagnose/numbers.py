@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from tyrefem.diagnose.unknowns import Unknown
+from tyrefem.diagnose.unknowns.unknown import Unknown
 
 #: SI unit of a parameter -> factor and unit in reports.
 READ = {

@@ -8,16 +8,16 @@ from pathlib import Path
 from typing import Any, TypedDict
 
 from tyrefem.compare.experiment import ColumnNames
-from tyrefem.diagnose.candidates import CandidateSpace, catalogue_candidates
-from tyrefem.diagnose.criterion import Criterion, LogEvidence
-from tyrefem.diagnose.evaluations import ProgressStore, WorkerModels
-from tyrefem.diagnose.exhaustive import Exhaustive
-from tyrefem.diagnose.forward_model import DriveResponse
-from tyrefem.diagnose.forward_selection import ForwardSelection
-from tyrefem.diagnose.selection import Strategy
-from tyrefem.diagnose.sensitivities import Tick
+from tyrefem.diagnose.data.sensitivities import Tick
+from tyrefem.diagnose.fitting.criterion import Criterion, LogEvidence
+from tyrefem.diagnose.fitting.exhaustive import Exhaustive
+from tyrefem.diagnose.fitting.forward_selection import ForwardSelection
+from tyrefem.diagnose.fitting.selection import Strategy
+from tyrefem.diagnose.forward.evaluations import ProgressStore, WorkerModels
+from tyrefem.diagnose.forward.forward_model import DriveResponse
+from tyrefem.diagnose.forward.strain_law_study import mesh_of_law
 from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
-from tyrefem.diagnose.strain_law_study import mesh_of_law
+from tyrefem.diagnose.unknowns.candidates import CandidateSpace, catalogue_candidates
 from tyrefem.effects import use_effects
 
 #: Name on the command line -> strategy.

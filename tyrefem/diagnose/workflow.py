@@ -12,8 +12,34 @@ from tyrefem.brief import Brief
 from tyrefem.compare.experiment import ColumnNames, Table, experiments
 from tyrefem.conduction.linear_solver import one_thread
 from tyrefem.diagnose.amend import Change, amended, changes
+from tyrefem.diagnose.beside.free_heat import free_heat
+from tyrefem.diagnose.beside.law_trials import LawTrial, law_trials
+from tyrefem.diagnose.beside.ranked_beside import beside_strain_laws, fit_beside, robustness
+from tyrefem.diagnose.beside.robustness import LEAST_P, Robustness
 from tyrefem.diagnose.better_law import by_better_law
-from tyrefem.diagnose.candidates import (
+from tyrefem.diagnose.data.residuals import Residuals, residuals_of
+from tyrefem.diagnose.data.runs import MeasuredDrive, measured_drive, with_noise_of_data
+from tyrefem.diagnose.data.sensitivities import responses, responses_like, sensitivities, shared_responses, unknowns_of
+from tyrefem.diagnose.diagnosis import DiagnosisData
+from tyrefem.diagnose.fitting.criterion import Criterion
+from tyrefem.diagnose.fitting.fits import FittedSet, first_fits, fitted_beside
+from tyrefem.diagnose.fitting.materiality import Movements, movements
+from tyrefem.diagnose.fitting.selection import SelectionProblem
+from tyrefem.diagnose.fitting.support import Support, supports
+from tyrefem.diagnose.forward.effort import check_effort
+from tyrefem.diagnose.forward.evaluations import Evaluations, evaluating, worker_models
+from tyrefem.diagnose.forward.forward_model import DriveResponse, ForwardModel
+from tyrefem.diagnose.forward.multifidelity import Predictions
+from tyrefem.diagnose.forward.strain_law_study import by_law
+from tyrefem.diagnose.heat.missing_heat import UnknownHeat, missing_heat, missing_heat_fitted, with_course
+from tyrefem.diagnose.heat.over_time import heat_over_time
+from tyrefem.diagnose.law.search import HeatLaw, heat_law
+from tyrefem.diagnose.law.signatures import law_signatures
+from tyrefem.diagnose.layout.conformal import read_calibration
+from tyrefem.diagnose.next_experiment import next_experiment
+from tyrefem.diagnose.options import DiagnosisOptions, Method, SimulationWork, grouped
+from tyrefem.diagnose.settings import DiagnosisSettings
+from tyrefem.diagnose.unknowns.candidates import (
     Candidate,
     Members,
     SetPrior,
@@ -22,38 +48,12 @@ from tyrefem.diagnose.candidates import (
     possible,
     simulated,
 )
-from tyrefem.diagnose.computed_wave import WithWave, computed_wave
-from tyrefem.diagnose.conformal import read_calibration
-from tyrefem.diagnose.criterion import Criterion
-from tyrefem.diagnose.diagnosis import DiagnosisData
-from tyrefem.diagnose.effort import check_effort
-from tyrefem.diagnose.energy_shapes import SHAPE
-from tyrefem.diagnose.evaluations import Evaluations, evaluating, worker_models
-from tyrefem.diagnose.fits import FittedSet, first_fits, fitted_beside
-from tyrefem.diagnose.forward_model import DriveResponse, ForwardModel
-from tyrefem.diagnose.free_heat import free_heat
-from tyrefem.diagnose.heat_over_time import heat_over_time
-from tyrefem.diagnose.heat_patches import patches
-from tyrefem.diagnose.law_search import HeatLaw, heat_law
-from tyrefem.diagnose.law_signatures import law_signatures
-from tyrefem.diagnose.law_trials import LawTrial, law_trials
-from tyrefem.diagnose.materiality import Movements, movements
-from tyrefem.diagnose.missing_heat import UnknownHeat, missing_heat, missing_heat_fitted, with_course
-from tyrefem.diagnose.multifidelity import Predictions
-from tyrefem.diagnose.next_experiment import next_experiment
-from tyrefem.diagnose.options import DiagnosisOptions, Method, SimulationWork, grouped
-from tyrefem.diagnose.partly import beside_discrepancies
-from tyrefem.diagnose.ranked_beside import beside_strain_laws, fit_beside, robustness
-from tyrefem.diagnose.residuals import Residuals, residuals_of
-from tyrefem.diagnose.robustness import LEAST_P, Robustness
-from tyrefem.diagnose.runs import MeasuredDrive, measured_drive, with_noise_of_data
-from tyrefem.diagnose.selection import SelectionProblem
-from tyrefem.diagnose.sensitivities import responses, responses_like, sensitivities, shared_responses, unknowns_of
-from tyrefem.diagnose.settings import DiagnosisSettings
-from tyrefem.diagnose.strain_law_study import by_law
-from tyrefem.diagnose.support import Support, supports
-from tyrefem.diagnose.unknowns import Unknown
-from tyrefem.diagnose.verdict import (
+from tyrefem.diagnose.unknowns.computed_wave import WithWave, computed_wave
+from tyrefem.diagnose.unknowns.energy_shapes import SHAPE
+from tyrefem.diagnose.unknowns.heat_patches import patches
+from tyrefem.diagnose.unknowns.unknown import Unknown
+from tyrefem.diagnose.verdicts.partly import beside_discrepancies
+from tyrefem.diagnose.verdicts.verdict import (
     CONFOUNDED,
     IDENTIFIED,
     NO_GAP,

@@ -13,10 +13,15 @@ from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
 from tyrefem.compare.experiment import OUTSIDE_THE_RUBBER
-from tyrefem.diagnose.candidates import Members, SetPrior, possible
-from tyrefem.diagnose.isolability import candidates_of
-from tyrefem.diagnose.record import AMENDED
-from tyrefem.diagnose.set_posteriors import (
+from tyrefem.diagnose.forward.strain_law_study import by_law
+from tyrefem.diagnose.layout.isolability import candidates_of
+from tyrefem.diagnose.settings import DiagnosisSettings
+from tyrefem.diagnose.unknowns.candidates import Members, SetPrior, possible
+from tyrefem.diagnose.unknowns.unknown import Unknown, base_unknowns, sensor_unknowns
+from tyrefem.diagnose.verdicts.verdict import NO_GAP
+from tyrefem.diagnose.words.record import AMENDED
+from tyrefem.diagnose.words.sentences import AGAIN
+from tyrefem.diagnose.words.set_posteriors import (
     POSTERIOR,
     SetPosterior,
     noise_by_sensor,
@@ -24,11 +29,6 @@ from tyrefem.diagnose.set_posteriors import (
     set_posteriors,
     tables,
 )
-from tyrefem.diagnose.settings import DiagnosisSettings
-from tyrefem.diagnose.strain_law_study import by_law
-from tyrefem.diagnose.unknowns import Unknown, base_unknowns, sensor_unknowns
-from tyrefem.diagnose.verdict import NO_GAP
-from tyrefem.diagnose.words import AGAIN
 from tyrefem.errors import InputError, quoted
 from tyrefem.inputs.study import StudyData
 from tyrefem.simulation.surroundings import GAS

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
-from tyrefem.diagnose.isolability import READING_INTERVAL
+from tyrefem.diagnose.layout.isolability import READING_INTERVAL
 from tyrefem.errors import InputError, nearest
 from tyrefem.inputs.changes import scaled
 from tyrefem.inputs.plan_choice import Limits, limit_unit

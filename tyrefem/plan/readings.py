@@ -10,16 +10,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
-from tyrefem.diagnose.effort import SENSITIVITIES, check_effort
-from tyrefem.diagnose.evaluations import Evaluations, evaluating
-from tyrefem.diagnose.forward_model import ForwardModel
-from tyrefem.diagnose.isolability import READING_INTERVAL
-from tyrefem.diagnose.multifidelity import Predictions
+from tyrefem.diagnose.data.sensitivities import Sensitivities, responses, sensitivities
+from tyrefem.diagnose.forward.effort import SENSITIVITIES, check_effort
+from tyrefem.diagnose.forward.evaluations import Evaluations, evaluating
+from tyrefem.diagnose.forward.forward_model import ForwardModel
+from tyrefem.diagnose.forward.multifidelity import Predictions
+from tyrefem.diagnose.forward.sampling import DriveSampling, SensorSampling
+from tyrefem.diagnose.layout.isolability import READING_INTERVAL
 from tyrefem.diagnose.options import SimulationWork
-from tyrefem.diagnose.sampling import DriveSampling, SensorSampling
-from tyrefem.diagnose.sensitivities import Sensitivities, responses, sensitivities
 from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
-from tyrefem.diagnose.unknowns import Unknown, sensor_unknowns
+from tyrefem.diagnose.unknowns.unknown import Unknown, sensor_unknowns
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
 from tyrefem.mechanics.strain_laws import strain_law

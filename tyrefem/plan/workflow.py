@@ -9,13 +9,13 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from tyrefem.diagnose.candidates import Members
 from tyrefem.diagnose.diagnosis import DiagnosisData
-from tyrefem.diagnose.evaluations import ProgressStore
-from tyrefem.diagnose.forward_model import DriveResponse
-from tyrefem.diagnose.isolability import layout_notes
+from tyrefem.diagnose.forward.evaluations import ProgressStore
+from tyrefem.diagnose.forward.forward_model import DriveResponse
+from tyrefem.diagnose.layout.isolability import layout_notes
 from tyrefem.diagnose.options import SimulationWork
 from tyrefem.diagnose.settings import DiagnosisSettings
+from tyrefem.diagnose.unknowns.candidates import Members
 from tyrefem.diagnose.workflow import diagnose
 from tyrefem.inputs.study import StudyData
 from tyrefem.plan.batch import Search, greedy_batch

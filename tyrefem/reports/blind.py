@@ -14,7 +14,7 @@ from tyrefem.reports.figures.style import FONT, PALETTE, QUIET, TITLE, add_axes,
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from tyrefem.diagnose.blind_rates import Blind
+    from tyrefem.diagnose.blind.rates import Blind
 
 #: Height of a line of text, inches.
 LINE = 0.21

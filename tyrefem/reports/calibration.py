@@ -5,14 +5,14 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tyrefem.diagnose.conformal import CALIBRATION
+from tyrefem.diagnose.layout.conformal import CALIBRATION
 from tyrefem.output import atomic_path, write_json
 from tyrefem.reports.figures.style import FONT, PALETTE, QUIET, TITLE, add_axes, figure, png, tidy, title
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from tyrefem.diagnose.calibration import Calibration, RankTest, Reliability
+    from tyrefem.diagnose.layout.calibration import Calibration, RankTest, Reliability
 
 PICTURE = "calibration.png"
 #: Files that `save` writes.

@@ -9,19 +9,19 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import tyrefem
-from tyrefem.diagnose import words
 from tyrefem.diagnose.amend import Change, difference
-from tyrefem.diagnose.candidates import key_of
-from tyrefem.diagnose.discrepancy_record import effect_probability
-from tyrefem.diagnose.draft_effect import EFFECTS, draft_effects
-from tyrefem.diagnose.headline import QUESTIONS, corrections, headline, label
 from tyrefem.diagnose.numbers import amount, base_name, parameter_name, percent, run_words
-from tyrefem.diagnose.prior_sensitivity import prior_words
-from tyrefem.diagnose.record import AMENDED, record, where
-from tyrefem.diagnose.result_tables import candidate_rows, finite, history_table, set_rows, where_table
-from tyrefem.diagnose.set_posteriors import POSTERIOR, posterior_record
-from tyrefem.diagnose.unknowns import Unknown
-from tyrefem.diagnose.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, PARTLY, UNEXPLAINED
+from tyrefem.diagnose.unknowns.candidates import key_of
+from tyrefem.diagnose.unknowns.unknown import Unknown
+from tyrefem.diagnose.verdicts.prior_sensitivity import prior_words
+from tyrefem.diagnose.verdicts.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, PARTLY, UNEXPLAINED
+from tyrefem.diagnose.words import sentences
+from tyrefem.diagnose.words.discrepancy_record import effect_probability
+from tyrefem.diagnose.words.draft_effect import EFFECTS, draft_effects
+from tyrefem.diagnose.words.headline import QUESTIONS, corrections, headline, label
+from tyrefem.diagnose.words.record import AMENDED, record, where
+from tyrefem.diagnose.words.result_tables import candidate_rows, finite, history_table, set_rows, where_table
+from tyrefem.diagnose.words.set_posteriors import POSTERIOR, posterior_record
 from tyrefem.inputs.changes import value_at
 from tyrefem.inputs.uncertain_numbers import left_out
 from tyrefem.mechanics.nearby_cycles import NearbyCycles
@@ -42,7 +42,7 @@ _FILES = ("verdict.json", POSTERIOR, AMENDED, "difference.txt", "where.csv", "hi
 #: Largest number of looks at the same data.
 MOST_LOOKS = 9
 #: Files that `save` may write.
-FILES = tuple(f"{words.AGAIN}/" * look + name for look in range(MOST_LOOKS) for name in _FILES)
+FILES = tuple(f"{sentences.AGAIN}/" * look + name for look in range(MOST_LOOKS) for name in _FILES)
 #: Number of rows shown; the rest can be unfolded.
 SHOWN = 12
 #: Smallest gain that gets a row, ln of odds.
@@ -77,7 +77,7 @@ def save(d: DiagnosisData, folder: str | Path) -> Path:
             (temporary / EFFECTS / name).write_text(text, encoding="utf-8")
         (temporary / PAGE).write_text(page(d, drawn, version=tyrefem.__version__), encoding="utf-8")
     if d.again is not None and d.again.verdict != NO_GAP:
-        save(d.again, folder / words.AGAIN)
+        save(d.again, folder / sentences.AGAIN)
     return folder / PAGE
 
 
@@ -96,7 +96,7 @@ def page(d: DiagnosisData, images: Mapping[str, bytes], *, version: str) -> str:
         version=version,
         label=label(d),
         headline=list(zip(QUESTIONS, headline(d), strict=True)),
-        sentences=words.verdict_words(d),
+        sentences=sentences.verdict_words(d),
         place=place,
         numbers=_numbers(d),
         named=_named(d),
@@ -105,8 +105,8 @@ def page(d: DiagnosisData, images: Mapping[str, bytes], *, version: str) -> str:
         where=_where(d),
         corrections=_corrections(d),
         difference=difference(d.original, d.study),
-        reasons=[words.shortened(reason) for reason in d.judgement.reasons],
-        further=words.next_words(d),
+        reasons=[sentences.shortened(reason) for reason in d.judgement.reasons],
+        further=sentences.next_words(d),
         offered_sensors=_offers(d, "sensors", "place", "run"),
         offered_drives=_offers(d, "drives", "drive", "sensor"),
         assumed=_assumed(d),
@@ -146,10 +146,10 @@ def _named(d: DiagnosisData) -> list[dict[str, Any]]:
         {
             "key": member.key,
             "probability": percent(effect_probability(d, member)),
-            "sentence": words.effect_sentence(member, d.best),
+            "sentence": sentences.effect_sentence(member, d.best),
             "source": member.effect.source,
             "amounts": [
-                *words.effect_amounts(member, d.best),
+                *sentences.effect_amounts(member, d.best),
                 *([d.movements[member].words] if member in d.movements else []),
             ],
         }
@@ -194,7 +194,7 @@ def _candidate(row: Mapping[str, Any]) -> dict[str, str]:
         "parameters": "; ".join(
             amount(entry["value"], entry["sd"], entry["unit"]) for entry in row["parameters"].values()
         ),
-        "confounded": words.shortened("; ".join(row["confounded_with"])),
+        "confounded": sentences.shortened("; ".join(row["confounded_with"])),
         **_fitness(row),
     }
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from tyrefem.diagnose.discrepancy import ENERGY
-from tyrefem.diagnose.energy_shapes import SHAPE
-from tyrefem.diagnose.partly_words import energy_shares
-from tyrefem.diagnose.verdict import PARTLY, UNEXPLAINED
+from tyrefem.diagnose.beside.discrepancy import ENERGY
+from tyrefem.diagnose.unknowns.energy_shapes import SHAPE
+from tyrefem.diagnose.verdicts.verdict import PARTLY, UNEXPLAINED
+from tyrefem.diagnose.words.partly import energy_shares
 from tyrefem.reports.diagnosis_missing import draw_zones
 from tyrefem.reports.figures.style import FONT, INK, PALETTE, QUIET, TITLE, add_axes, figure, tidy, title
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from tyrefem.diagnose.diagnosis import DiagnosisData
-    from tyrefem.diagnose.fits import FittedSet
+    from tyrefem.diagnose.fitting.fits import FittedSet
 
 NAME = "energy-share.png"
 

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tyrefem.diagnose.candidates import key_of
+from tyrefem.diagnose.data.runs import MeasuredDrive, MeasuredSensor
 from tyrefem.diagnose.numbers import percent
-from tyrefem.diagnose.result_tables import candidate_rows, rms_table, set_rows
-from tyrefem.diagnose.runs import MeasuredDrive, MeasuredSensor
+from tyrefem.diagnose.unknowns.candidates import key_of
+from tyrefem.diagnose.words.result_tables import candidate_rows, rms_table, set_rows
 from tyrefem.reports.diagnosis_energy import energy_figures
 from tyrefem.reports.diagnosis_gap import AFTER, BEFORE, HELD_OUT, gap_figure
 from tyrefem.reports.diagnosis_missing import missing_figures, tells_missing_heat

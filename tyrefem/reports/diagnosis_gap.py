@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.diagnose.residual_tables import rms
-from tyrefem.diagnose.result_tables import rms_table
+from tyrefem.diagnose.data.residual_tables import rms
+from tyrefem.diagnose.words.result_tables import rms_table
 from tyrefem.reports.figures.style import FONT, INK, PALETTE, QUIET, TITLE, add_axes, figure, short, tidy, title
 
 if TYPE_CHECKING:
@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from tyrefem.diagnose.data.runs import MeasuredDrive, MeasuredSensor
     from tyrefem.diagnose.diagnosis import DiagnosisData
-    from tyrefem.diagnose.runs import MeasuredDrive, MeasuredSensor
 
 Array = NDArray[np.float64]
 BEFORE, AFTER = PALETTE[1], PALETTE[0]

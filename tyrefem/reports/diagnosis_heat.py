@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tyrefem.diagnose.heat_words import course_words, source_place
+from tyrefem.diagnose.words.heat import course_words, source_place
 from tyrefem.reports.figures.style import (
     FONT,
     INK,
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from tyrefem.diagnose.diagnosis import DiagnosisData
-    from tyrefem.diagnose.heat_over_time import HeatOverTime
+    from tyrefem.diagnose.heat.over_time import HeatOverTime
 
 
 def heat_course_figure(d: DiagnosisData, over_time: HeatOverTime) -> Figure:

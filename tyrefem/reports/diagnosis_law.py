@@ -6,15 +6,15 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from tyrefem.diagnose.draft_effect import EFFECTS, draft_effects
-from tyrefem.diagnose.law_terms import LOAD, PRESSURE, SPEED
-from tyrefem.diagnose.law_words import law_words
+from tyrefem.diagnose.law.terms import LOAD, PRESSURE, SPEED
+from tyrefem.diagnose.words.draft_effect import EFFECTS, draft_effects
+from tyrefem.diagnose.words.law import law_words
 
 if TYPE_CHECKING:
     from markupsafe import Markup
 
     from tyrefem.diagnose.diagnosis import DiagnosisData
-    from tyrefem.diagnose.law_signatures import LawSignature
+    from tyrefem.diagnose.law.signatures import LawSignature
 
 #: Number of effects in the table; mechanisms are all shown.
 SHOWN = 8

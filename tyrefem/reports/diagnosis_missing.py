@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.diagnose.heat_courses import BEGINS, ENDS
-from tyrefem.diagnose.heat_patches import ALL_LAYERS, INNER, OUTER
-from tyrefem.diagnose.heat_words import is_told
+from tyrefem.diagnose.heat.courses import BEGINS, ENDS
 from tyrefem.diagnose.numbers import amount
-from tyrefem.diagnose.verdict import PARTLY, UNEXPLAINED
+from tyrefem.diagnose.unknowns.heat_patches import ALL_LAYERS, INNER, OUTER
+from tyrefem.diagnose.verdicts.verdict import PARTLY, UNEXPLAINED
+from tyrefem.diagnose.words.heat import is_told
 from tyrefem.reports.diagnosis_heat import heat_course_figure
 from tyrefem.reports.diagnosis_sections import DIVERGING, draw_ground
 from tyrefem.reports.figures.canvas import Canvas, canvas
@@ -38,8 +38,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from tyrefem.diagnose.diagnosis import DiagnosisData
-    from tyrefem.diagnose.heat_over_time import HeatOverTime
-    from tyrefem.diagnose.heat_sources import UnknownSource
+    from tyrefem.diagnose.heat.over_time import HeatOverTime
+    from tyrefem.diagnose.heat.sources import UnknownSource
     from tyrefem.geometry import Section
 
 Array = NDArray[np.float64]

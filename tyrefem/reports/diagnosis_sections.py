@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.diagnose.result_tables import rms_table
+from tyrefem.diagnose.words.result_tables import rms_table
 from tyrefem.reports.figures.canvas import Canvas, canvas, draw_outlines
 from tyrefem.reports.figures.style import (  # fmt: skip
     FONT,

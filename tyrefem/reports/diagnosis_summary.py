@@ -8,14 +8,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tyrefem.diagnose.discrepancy_record import effect_probability
-from tyrefem.diagnose.headline import QUESTIONS, corrections, headline, label
-from tyrefem.diagnose.heat_words import course_words, source_place
-from tyrefem.diagnose.law_words import law_words
 from tyrefem.diagnose.numbers import amount, correction_amount, correction_subject, percent
-from tyrefem.diagnose.result_tables import set_rows
-from tyrefem.diagnose.verdict import NO_GAP, PARTLY, UNEXPLAINED
-from tyrefem.diagnose.words import effect_amounts, effect_sentence, next_words, noise_words
+from tyrefem.diagnose.verdicts.verdict import NO_GAP, PARTLY, UNEXPLAINED
+from tyrefem.diagnose.words.discrepancy_record import effect_probability
+from tyrefem.diagnose.words.headline import QUESTIONS, corrections, headline, label
+from tyrefem.diagnose.words.heat import course_words, source_place
+from tyrefem.diagnose.words.law import law_words
+from tyrefem.diagnose.words.result_tables import set_rows
+from tyrefem.diagnose.words.sentences import effect_amounts, effect_sentence, next_words, noise_words
 from tyrefem.output import versions
 from tyrefem.reports.diagnosis_gap import gap_figure
 from tyrefem.reports.diagnosis_missing import tells_missing_heat
@@ -23,7 +23,7 @@ from tyrefem.reports.figures.style import picture
 
 if TYPE_CHECKING:
     from tyrefem.diagnose.diagnosis import DiagnosisData
-    from tyrefem.diagnose.materiality import Movement
+    from tyrefem.diagnose.fitting.materiality import Movement
 
 SUMMARY = "summary.html"
 #: A4 between its margins, mm; height of a line of text and the space above a heading, mm.

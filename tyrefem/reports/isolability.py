@@ -6,7 +6,7 @@ import io
 
 import numpy as np
 
-from tyrefem.diagnose.isolability import MARGIN, Isolability
+from tyrefem.diagnose.layout.isolability import MARGIN, Isolability
 
 
 def picture(isolability: Isolability) -> bytes:

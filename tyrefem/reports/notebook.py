@@ -200,8 +200,8 @@ def comparison_page(comparison: ComparisonData) -> str:
 
 def diagnosis_page(diagnosis: DiagnosisData) -> str:
     """A diagnosis: what is wrong and how sure, and the sets of effects with their probabilities."""
-    from tyrefem.diagnose.headline import headline, label
-    from tyrefem.diagnose.verdict import IDENTIFIED, NO_GAP
+    from tyrefem.diagnose.verdicts.verdict import IDENTIFIED, NO_GAP
+    from tyrefem.diagnose.words.headline import headline, label
 
     wrong, sure, _ = headline(diagnosis)
     sets = diagnosis.judgement.ranking[:BARS]

@@ -9,7 +9,7 @@ the drives of the runs.
 import matplotlib.pyplot as plt
 
 import tyrefem as tf
-from tyrefem.diagnose.isolability import isolability
+from tyrefem.diagnose.layout.isolability import isolability
 from tyrefem.effects import catalogue
 
 candidates = {"hot-road", "wet-road", "sun", "radiation", "leak"}

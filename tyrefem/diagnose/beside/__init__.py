@@ -1,0 +1,1 @@
+"""Sets of effects beside what else may be wrong with the model."""

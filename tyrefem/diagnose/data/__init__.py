@@ -1,0 +1,1 @@
+"""Measured runs as residuals with their noise and sensitivities."""

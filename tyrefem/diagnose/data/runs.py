@@ -1,0 +1,86 @@
+"""The measured runs of a diagnosis: readings in blocks of time, with the uncertainty of each block."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.compare.experiment import Experiment
+from tyrefem.diagnose.data.noise import ReadingNoise, noise_of
+from tyrefem.diagnose.forward.sampling import DriveSampling, SensorSampling
+from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
+from tyrefem.inputs.study import StudyData
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class MeasuredSensor(SensorSampling):
+    """The readings of one sensor in one run: ``measured`` (n,) degC at ``times``.
+
+    ``origin``: the stated noise and that of the readings' scatter; None: ``noise`` is the stated one.
+    """
+
+    measured: Array = field(kw_only=True)
+    origin: ReadingNoise | None = field(default=None, kw_only=True)
+
+    @property
+    def sampling(self) -> SensorSampling:
+        """The sampling without the readings."""
+        return SensorSampling(self.sensor, self.times, self.noise, self.discrepancy, self.correlation_time, self.blocks)
+
+
+@dataclass(frozen=True, eq=False)
+class MeasuredDrive(DriveSampling):
+    """A measured run: its drive, and the readings of every sensor."""
+
+    sensors: tuple[MeasuredSensor, ...]
+
+    @cached_property
+    def measured(self) -> Array:
+        """Block means of all sensors, one after the other, degC."""
+        return np.concatenate([readings.block_means(readings.measured) for readings in self.sensors])
+
+    @cached_property
+    def sampling(self) -> DriveSampling:
+        """The drive and the sampling of the run, without the readings."""
+        sensors = tuple(readings.sampling for readings in self.sensors)
+        return DriveSampling(self.name, self.drive, self.hold_out, sensors)
+
+
+def measured_drive(experiment: Experiment, study: StudyData, settings: DiagnosisSettings = DEFAULT) -> MeasuredDrive:
+    """The measured run of an experiment with the stated noise; only readings within the simulated drive."""
+    choice, run = study.card.diagnosis, experiment.run
+    driven = study.with_drive(dict(experiment.drive)) if experiment.drive else study
+    end = driven.card.drive.end
+    sensors = []
+    for sensor in run.sensors:
+        values = run.temperatures[sensor].to_numpy(dtype=float)
+        used = np.isfinite(values) & (run.times >= -1e-9) & (run.times <= end * (1 + 1e-9))
+        if not used.any():
+            continue
+        card = study.sensors.get(sensor)
+        stated = experiment.noise or (card.noise if card is not None else 0.5)
+        correlated = choice.discrepancy, choice.correlation_time
+        times, measured = run.times[used], values[used]
+        sensors.append(MeasuredSensor(sensor, times, stated, *correlated, settings.blocks, measured=measured))
+    return MeasuredDrive(experiment.name, dict(experiment.drive), experiment.hold_out, tuple(sensors))
+
+
+def with_noise_of_data(
+    runs: tuple[MeasuredDrive, ...], settings: DiagnosisSettings = DEFAULT
+) -> tuple[MeasuredDrive, ...]:
+    """The runs with the noise that their readings show, where it differs clearly from the stated one: `noise_of`."""
+    sensors = [readings for run in runs for readings in run.sensors]
+    # Noise is a matter of differences: the level of the readings stays here.
+    series = [(readings.sensor, readings.times, readings.measured - readings.measured[0]) for readings in sensors]
+    estimates = iter(noise_of(series, [readings.noise for readings in sensors], settings))
+
+    def judged(readings: MeasuredSensor) -> MeasuredSensor:
+        noise = next(estimates)
+        return replace(readings, noise=noise.used, origin=noise)
+
+    return tuple(replace(run, sensors=tuple(judged(readings) for readings in run.sensors)) for run in runs)

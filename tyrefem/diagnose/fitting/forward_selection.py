@@ -1,0 +1,191 @@
+"""Forward selection with the full model; the linear model about each fit ranks larger sets."""
+
+from __future__ import annotations
+
+import itertools
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from tyrefem.diagnose.fitting.fits import FittedSet
+from tyrefem.diagnose.fitting.selection import ScoredSet, SelectionProblem, sets_of
+from tyrefem.diagnose.inference.linear_model import LinearModel
+from tyrefem.diagnose.settings import DiagnosisSettings
+from tyrefem.diagnose.unknowns.candidates import Members, separate
+from tyrefem.inputs.study import StudyData
+
+
+@dataclass(frozen=True)
+class ForwardSelection:
+    """Sets grow by one effect at a time from sets that explain the data.
+
+    1. The empty set is fitted. If it nearly explains the data, the linear model about this fit ranks all effects and
+       pairs. Otherwise the linear model about x = 0 ranks them, and the best effects are fitted with the full model.
+    2. From every good fit, the linear model about it ranks the sets with one more effect. The best sets are fitted.
+    3. At the end every subset of the best set is fitted (backward check).
+
+    The search ends early if a cause outside the catalogue is far ahead.
+
+    The search can miss two effects that explain the data only together, each alone much worse than other effects.
+    `tyrefem.diagnose.fitting.exhaustive.Exhaustive` does not miss them.
+    """
+
+    def check(self, study: StudyData, candidates: Members, settings: DiagnosisSettings) -> None:
+        """Accepts any number of candidates."""
+
+    def search(self, problem: SelectionProblem) -> list[ScoredSet]:
+        """See `tyrefem.diagnose.fitting.selection.Strategy`."""
+        settings = problem.settings
+        progress = _Progress(problem)
+        progress.fit([()])
+        singles, pairs = (progress.estimated(size) for size in (1, 2))
+        # Two effects that cancel each other may both seem weak alone, so the members of the best pair are fitted too.
+        ahead = [(member,) for member in (pairs[0] if pairs else ())]
+        if progress.fits[()].close:
+            progress.extend_none()
+        else:
+            progress.fit([*singles[: settings.singles], *ahead])
+        batches = 0
+        outside = problem.outside(progress.fits[()]) if problem.outside else -np.inf
+        while len(progress.fits) < settings.most_sets:
+            if batches >= settings.largest and outside > progress.top + settings.outside_lead:
+                break
+            batches += 1
+            sets = progress.promising()[: settings.batch] or progress.missing_parts()
+            if not sets:
+                break
+            progress.fit(sets)
+        return progress.scored()
+
+
+def screened(problem: SelectionProblem, linear: LinearModel) -> list[tuple[float, Members]]:
+    """The empty set, single effects and pairs with their scores in a linear model, best first."""
+    sizes = range(min(problem.settings.largest, 2) + 1)
+    sets = [members for size in sizes for members in sets_of(problem.candidates, size)]
+    return sorted(((problem.linear_score(linear, members), members) for members in sets), key=lambda pair: -pair[0])
+
+
+class _Progress:
+    """The fitted sets, and estimated scores of the other sets."""
+
+    def __init__(self, problem: SelectionProblem) -> None:
+        self.problem, self.settings = problem, problem.settings
+        self.fits: dict[Members, FittedSet] = {}
+        #: Set -> number of times that its fit was continued.
+        self._continuations: Counter[Members] = Counter()
+        linear = problem.linear
+        #: Set -> (estimated score, whether the estimate is from the fit of a subset).
+        self._estimate: dict[Members, tuple[float, bool]] = {
+            problem.ordered(members): (score + linear.constant, False) for score, members in screened(problem, linear)
+        }
+
+    def score(self, members: Members) -> float:
+        return self.problem.score(self.fits[members])
+
+    @property
+    def top(self) -> float:
+        return max(self.score(members) for members in self.fits)
+
+    def estimated(self, size: int) -> list[Members]:
+        """Sets of ``size`` effects, best estimate first."""
+        sets = (members for members in self._estimate if len(members) == size)
+        return sorted(sets, key=lambda members: -self._estimate[members][0])
+
+    def fit(self, sets: Iterable[Members]) -> None:
+        """Fit sets, continue the leading fits, and estimate the sets that add one effect to a good fit."""
+        wanted = [members for members in dict.fromkeys(sets) if members not in self.fits]
+        self._take(self.problem.fitted(wanted, self._starts(wanted)))
+        # A continued fit gives better estimates of the sets that add to it.
+        for members in dict.fromkeys((*wanted, *self._continue_leading())):
+            good = self.score(members) > self.top - self.settings.far_score
+            if members and len(members) < self.settings.largest and good:
+                self._extend(members)
+
+    def _take(self, fits: Sequence[FittedSet]) -> None:
+        self.fits |= {self.problem.ordered(fit.members): fit for fit in fits}
+
+    def _starts(self, sets: Sequence[Members]) -> dict[Members, FittedSet]:
+        """Set -> fit of its best subset that nearly explains the data, if there is one."""
+        ahead = [members for members in sorted(self.fits, key=self.score, reverse=True) if self.fits[members].close]
+        parts = {members: next((part for part in ahead if set(part) < set(members)), None) for members in sets}
+        return {members: self.fits[part] for members, part in parts.items() if part is not None}
+
+    def _continue_leading(self) -> list[Members]:
+        """Continue the leading fits to convergence, because they decide the verdict. Returns their sets."""
+        settings, continued = self.settings, []
+        for _ in range(settings.continued_sets * settings.most_continuations):
+            ahead = sorted(self.fits, key=self.score, reverse=True)[: settings.continued_sets]
+            far = self.top - settings.far_score
+            left = [members for members in ahead if self.score(members) > far and self._worth_continuing(members)]
+            if not left:
+                break
+            self._take(self.problem.continued([self.fits[members] for members in left]))
+            self._continuations.update(left)
+            continued += left
+        return continued
+
+    def _worth_continuing(self, members: Members) -> bool:
+        fit, times, settings = self.fits[members], self._continuations[members], self.settings
+        if fit.finished or times >= settings.most_continuations:
+            return False
+        if times or not any(self.fits):
+            return (
+                fit.misfit
+                < (settings.continued_twice_misfit if times else settings.none_continued_misfit) * fit.readings
+            )
+        return fit.worth_continuing
+
+    def extend_none(self) -> None:
+        """Estimate all single effects and pairs in the linear model about the fit of no effect."""
+        problem = self.problem
+        about = problem.linear_about(self.fits[()], problem.candidates)
+        of_none = problem.linear_score(about, ())
+        for score, members in screened(problem, about):
+            if members:
+                self._estimate[problem.ordered(members)] = (self.score(()) + score - of_none, True)
+
+    def _extend(self, members: Members) -> None:
+        """Estimate every set with one more effect in the linear model about the fit."""
+        problem, criterion = self.problem, self.problem.criterion
+        others = [candidate for candidate in problem.candidates if separate(candidate, members)]
+        about = problem.linear_about(self.fits[members], others)
+        of_part = criterion.of_linear(about, ())
+        for candidate in others:
+            more = problem.ordered((*members, candidate))
+            gain = criterion.of_linear(about, (candidate,)) - of_part + problem.prior(more) - problem.prior(members)
+            known, judged = self._estimate.get(more, (0.0, False))
+            value = self.score(members) + gain
+            # With estimates from two subsets, the larger one counts.
+            self._estimate[more] = (max(value, known) if judged else value, True)
+
+    def promising(self) -> list[Members]:
+        """Sets without a fit that may be the best set, best estimate first."""
+        top, settings = self.top, self.settings
+        # A pair without an estimate from a subset waits until its members are fitted.
+        sets = [
+            (value, members)
+            for members, (value, judged) in self._estimate.items()
+            if members not in self.fits
+            and value > top - (settings.near_score if judged else settings.far_score)
+            and (judged or len(members) < 2)
+        ]
+        return [members for _, members in sorted(sets, key=lambda pair: -pair[0])]
+
+    def missing_parts(self) -> list[Members]:
+        """Subsets of the best set that have no fit."""
+        best = max(self.fits, key=self.score)
+        parts = [part for size in range(1, len(best)) for part in itertools.combinations(best, size)]
+        return [part for part in parts if part not in self.fits]
+
+    def scored(self) -> list[ScoredSet]:
+        """All sets, best first; no set without a fit ranks above the best fitted set."""
+        highest = self.top - self.settings.near_score
+        sets = [ScoredSet(self.score(members), members, fit) for members, fit in self.fits.items()]
+        sets += [
+            ScoredSet(min(value, highest), members, None)
+            for members, (value, _) in self._estimate.items()
+            if members not in self.fits
+        ]
+        return sorted(sets, key=lambda scored: -scored.score)

@@ -1,0 +1,278 @@
+"""Fit of one set of effects by Gauss-Newton steps with secant corrections; each step gives a new state."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import chdtrc
+
+from tyrefem.brief import Brief
+from tyrefem.diagnose.inference.evidence import Posterior, posterior
+from tyrefem.diagnose.inference.linear_model import LinearModel
+from tyrefem.diagnose.settings import DiagnosisSettings
+from tyrefem.diagnose.unknowns.candidates import Candidate, Members
+from tyrefem.diagnose.unknowns.unknown import Unknown
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class FitState(Brief):
+    """State of the fit of a set: the linear model r(x') = r - J (x' - x) and the next point to simulate.
+
+    Gauss-Newton within a trust region, a box of ``radius`` prior standard deviations about the last good point. A step
+    that makes the fit worse, or leads to an impossible tyre, shrinks the region. The corrected J gives the next step.
+
+    Parameters
+    ----------
+    members : the set. unknowns : all fitted unknowns (k). shapes : parameters that join the fit with new sensitivities.
+    x : (k,) last good point. r : (n,) whitened residuals there. J : (n, k) -dr/dx.
+    computed : number of the run -> block means at x. next_point : (k,). posterior : of the linear model about x.
+    radius : of the trust region, prior sd. limit : most steps. steps : steps made. tangents : Jacobians still allowed.
+    done : the fit has ended. converged : further steps would not reduce the misfit noticeably.
+    continuation : the state continues a first fit. jacobian_outdated : J was not taken at x.
+    needs_tangents : J is needed at x. simulated : x was simulated.
+    """
+
+    members: Members
+    unknowns: tuple[Unknown, ...]
+    shapes: tuple[Unknown, ...]
+    settings: DiagnosisSettings
+    x: Array
+    r: Array
+    J: Array
+    computed: Mapping[int, Array]
+    next_point: Array
+    posterior: Posterior
+    radius: float
+    limit: int
+    steps: int = 0
+    tangents: int = 0
+    done: bool = False
+    converged: bool = False
+    continuation: bool = False
+    jacobian_outdated: bool = False
+    needs_tangents: bool = False
+    simulated: bool = True
+
+    @property
+    def next_values(self) -> dict[Unknown, float]:
+        """Values of the unknowns at the next point."""
+        return self.by_unknown(self.next_point)
+
+    @property
+    def current_values(self) -> dict[Unknown, float]:
+        """Values of the unknowns at the last good point."""
+        return self.by_unknown(self.x)
+
+    def by_unknown(self, x: Array) -> dict[Unknown, float]:
+        """Unknown -> its value; 1 for effects without amplitude."""
+        fixed = [unknown for member in self.members for unknown in member.presence]
+        return dict(zip(self.unknowns, (float(value) for value in x), strict=True)) | dict.fromkeys(fixed, 1.0)
+
+    @cached_property
+    def _prior(self) -> tuple[Array, Array, Array]:
+        limits = np.array([(unknown.sd, unknown.low, unknown.high) for unknown in self.unknowns]).reshape(-1, 3)
+        return limits[:, 0], limits[:, 1], limits[:, 2]
+
+    def fitted(self, radius: float = np.inf) -> Posterior:
+        """Posterior of the linear model about x, within a box of ``radius`` prior sd about x."""
+        sd, low, high = self._prior
+        low, high = np.maximum(low, self.x - radius * sd), np.minimum(high, self.x + radius * sd)
+        return posterior(self.J.T @ self.J, self.J.T @ (self.r + self.J @ self.x), sd, low, high)
+
+    def misfit(self, r: Array, x: Array) -> float:
+        """|r|^2 + |x/sd|^2."""
+        return float(r @ r + ((x / self._prior[0]) ** 2).sum())
+
+    def _reduction_at(self, x: Array) -> float:
+        """Reduction of the misfit at a point, predicted by the linear model."""
+        return self.misfit(self.r, self.x) - self.misfit(self.r - self.J @ (x - self.x), x)
+
+    @property
+    def predicted_reduction(self) -> float:
+        """Largest further reduction of the misfit, predicted by the linear model."""
+        return max(self._reduction_at(self.posterior.mean), 0.0)
+
+    @property
+    def _may_take_tangents(self) -> bool:
+        return self.tangents > 0 and self.steps < self.limit
+
+    @property
+    def _misfit_is_improbable(self) -> bool:
+        """Whether noise alone would rarely give a misfit this large."""
+        return float(chdtrc(len(self.r), self.misfit(self.r, self.x))) < self.settings.doubtful_p
+
+    # -- steps: each returns the next state
+
+    def proposed(self) -> FitState:
+        """The state with the next point, or the finished fit."""
+        state = replace(self, posterior=self.fitted(), next_point=self.fitted(self.radius).mean)
+        if state.predicted_reduction < self.settings.least_reduction:
+            return replace(state, done=True, converged=True)
+        return replace(state, done=state.done or self.steps >= self.limit or self.radius < self.settings.trust_smallest)
+
+    def rejected(self) -> FitState:
+        """The state after a next point at which the tyre is impossible."""
+        return replace(self, steps=self.steps + 1, radius=self.settings.trust_shorter * self._reach).proposed()
+
+    @property
+    def _reach(self) -> float:
+        """Largest distance from x to the next point, prior sd."""
+        return float(np.abs((self.next_point - self.x) / self._prior[0]).max(initial=0.0))
+
+    def accepted(self, computed: Mapping[int, Array], r: Array) -> FitState:
+        """The state after the simulations at the next point: block means by run, and whitened residuals (n,)."""
+        settings, sd, reach = self.settings, self._prior[0], self._reach
+        step = self.next_point - self.x
+        prediction_error = (self.r - self.J @ step) - r
+        predicted_reduction, reduction = (
+            self._reduction_at(self.next_point),
+            self.misfit(self.r, self.x) - self.misfit(r, self.next_point),
+        )
+        J = self.J
+        if reach > 0:
+            # Broyden's update: the smallest change of J, in prior sd, that predicts this simulation.
+            J = J + np.outer(prediction_error, step / sd**2) / float(((step / sd) ** 2).sum())
+        state = replace(self, J=J, steps=self.steps + 1, simulated=True)
+        if reduction < 0 and self.simulated:
+            state = replace(state, radius=settings.trust_shorter * reach)
+            return state._with_tangents() if state.jacobian_outdated and state._may_take_tangents else state.proposed()
+        limited = bool((np.abs(step / sd) > 0.99 * self.radius).any())
+        radius = self.radius * settings.trust_wider if limited and reduction > predicted_reduction / 2 else self.radius
+        state = replace(state, x=self.next_point, r=r, computed=dict(computed), jacobian_outdated=True, radius=radius)
+        if not self.simulated:
+            return state._requesting_tangents(())
+        return state._judged(prediction_error, reduction, limited=limited)
+
+    def _judged(self, prediction_error: Array, reduction: float, *, limited: bool) -> FitState:
+        """The state after a good step: request of tangents, next point, or end."""
+        settings, off = self.settings, float(np.linalg.norm(prediction_error))
+        now = self.misfit(self.r, self.x)
+        slow = self.continuation and now > max(
+            settings.slow_misfit * len(self.r), settings.slow_share * (now + reduction)
+        )
+        if (self.shapes or off > settings.poor_prediction) and self._may_take_tangents and not slow:
+            return self._with_tangents()
+        state = self.proposed()
+        if not limited and off < settings.close_prediction:
+            state = replace(state, done=True, converged=True)
+        state = replace(state, done=state.done or slow)
+        if (
+            state.converged
+            and state.continuation
+            and state.jacobian_outdated
+            and state._may_take_tangents
+            and state._misfit_is_improbable
+        ):
+            # After many secant corrections, J may wrongly predict that no reduction is left.
+            return replace(state, done=False, converged=False)._with_tangents()
+        return state
+
+    def _with_tangents(self) -> FitState:
+        return replace(self, tangents=self.tangents - 1)._requesting_tangents(self.shapes)
+
+    def _requesting_tangents(self, shapes: Sequence[Unknown]) -> FitState:
+        """The state that needs tangents at x; the shape parameters join the fit because the amplitudes are known."""
+        return replace(
+            self,
+            unknowns=(*self.unknowns, *shapes),
+            x=np.concatenate([self.x, np.zeros(len(shapes))]),
+            shapes=tuple(unknown for unknown in self.shapes if unknown not in shapes),
+            jacobian_outdated=False,
+            needs_tangents=True,
+        )
+
+    def continued(self) -> FitState:
+        """The state that continues this fit with new tangents and more steps."""
+        settings = self.settings
+        further = replace(
+            self,
+            done=False,
+            continuation=True,
+            tangents=settings.more_tangents - 1,
+            limit=self.steps + settings.more_steps,
+            radius=max(self.radius, 1.0),
+        )
+        return further._requesting_tangents(further.shapes)
+
+    def beside(self, unknowns: Sequence[Unknown], r: Array, J: Array) -> FitState:
+        """The state at the same point with further unknowns at 0, beside another covariance of the readings.
+
+        ``r`` (n,), ``J`` (n, k + number of further unknowns): whitened by it. No new tangents are taken.
+        """
+        further = replace(
+            self,
+            unknowns=(*self.unknowns, *unknowns),
+            x=np.concatenate([self.x, np.zeros(len(unknowns))]),
+            r=r,
+            J=J,
+            done=False,
+            converged=False,
+            continuation=False,
+            tangents=0,
+            limit=self.steps + self.settings.beside_steps,
+            radius=self.settings.trust,
+        )
+        return further.proposed()
+
+    def without(self, members: Sequence[Candidate]) -> FitState:
+        """The state with effects left out that have amplitudes only: at the same point, predicted with J."""
+        left_out = {unknown for member in members for unknown in member.unknowns}
+        kept = np.array([unknown not in left_out for unknown in self.unknowns])
+        return replace(
+            self,
+            members=tuple(member for member in self.members if member not in members),
+            unknowns=tuple(unknown for unknown in self.unknowns if unknown not in left_out),
+            shapes=tuple(unknown for unknown in self.shapes if unknown not in left_out),
+            x=self.x[kept],
+            r=self.r + self.J[:, ~kept] @ self.x[~kept],
+            J=self.J[:, kept],
+        )
+
+    def with_jacobian(self, J: Array) -> FitState:
+        """The state after the tangents at x; ``J``: whitened (n, k)."""
+        return replace(self, J=J, needs_tangents=False).proposed()
+
+
+def initial_state(
+    linear: LinearModel,
+    computed: Mapping[int, Array],
+    members: Members,
+    settings: DiagnosisSettings,
+    part: FitState | None = None,
+) -> FitState:
+    """The initial state of the fit of a set: at x = 0, or at the result of the fit of a subset.
+
+    Parameters
+    ----------
+    linear : the linear model about x = 0. computed : number of the run -> block means there.
+    part : state of the fit of a subset, or of the set itself.
+    """
+    design = linear.design
+    taken = () if part is None else part.members
+    new = [member for member in members if member not in taken]
+    amplitudes = tuple(unknown for member in new for unknown in member.amplitudes)
+    present = [unknown for member in new for unknown in member.presence]
+    shapes = tuple(unknown for member in new for unknown in member.shapes)
+    columns = linear.jacobian[:, design.columns(amplitudes)]
+    if part is None:
+        unknowns = (*design.unknowns[: design.nuisance], *amplitudes)
+        x, r = np.zeros(len(unknowns)), linear.data
+        J = np.hstack([linear.jacobian[:, : design.nuisance], columns])
+    else:
+        unknowns = (*part.unknowns, *amplitudes)
+        x, r = np.concatenate([part.x, np.zeros(len(amplitudes))]), part.r
+        J, computed, shapes = np.hstack([part.J, columns]), part.computed, (*part.shapes, *shapes)
+    r = r - linear.jacobian[:, design.columns(present)].sum(axis=1)
+    empty = Posterior(x, np.zeros((len(x), len(x))), 0.0, np.zeros(len(x), dtype=bool), np.zeros(len(x)))
+    # An effect without amplitude changes all sensitivities, so its start is simulated and tangents are taken first.
+    state = FitState(
+        members, unknowns, shapes, settings, x, r, J, dict(computed), x, empty, settings.trust, settings.first_steps,
+        simulated=not present,
+    )  # fmt: skip
+    return state.proposed() if state.simulated else replace(state, posterior=state.fitted())

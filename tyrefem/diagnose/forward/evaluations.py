@@ -1,0 +1,195 @@
+"""Evaluations of the forward model in one or several processes; kept on disk for an interrupted diagnosis."""
+
+from __future__ import annotations
+
+import pickle
+import shutil
+import tempfile
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import Executor, as_completed
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.brief import Brief
+from tyrefem.cache import Cache
+from tyrefem.diagnose.forward.forward_model import ForwardModel
+from tyrefem.inputs.study import StudyData
+from tyrefem.output import jsonable, versions
+from tyrefem.processes import processes
+from tyrefem.variants.answer_store import AnswerStore, digest, effects_source, plain, study_digest
+
+if TYPE_CHECKING:
+    from tyrefem.diagnose.forward.sampling import SensorSampling
+
+Array = NDArray[np.float64]
+
+
+@dataclass(eq=False)
+class ProgressStore(AnswerStore):
+    """A folder with evaluations of one forward model: one study with its cards and drives, and one version."""
+
+    def open(self, model: ForwardModel) -> int:
+        """Resume the stored evaluations of this model and delete those of other models; returns their number."""
+        return self.resume(key_of(model))
+
+    def look(self, number: int) -> ProgressStore:
+        """The store of a further look at the same data; for the first look, this store."""
+        return self if number == 0 else ProgressStore(self.folder.with_name(f"{self.folder.name}-{number + 1}"))
+
+    def by_law(self, law: str) -> ProgressStore:
+        """The store of the diagnosis with another strain law."""
+        return ProgressStore(self.folder.with_name(f"{self.folder.name}-{law}"))
+
+    def clear(self) -> None:
+        """Delete the stored evaluations of all looks, after the diagnosis is finished."""
+        for folder in (self.folder, *self.folder.parent.glob(f"{self.folder.name}-*")):
+            shutil.rmtree(folder, ignore_errors=True)
+
+
+def key_of(model: ForwardModel) -> str:
+    """Digest of all inputs of a model's evaluations: study, cards, source code of the effects, drives, versions.
+
+    >>> from tyrefem.diagnose.forward.forward_model import ForwardModel
+    >>> from tyrefem.inputs.study import study
+    >>> stated, faster = study("nasa-22x5.5-8pr"), study("nasa-22x5.5-8pr", {"drive.speed": "25 mph"})
+    >>> key_of(ForwardModel(stated, ())) == key_of(ForwardModel(faster, ()))
+    False
+    """
+    drives = [
+        [each.name, each.drive, each.hold_out, [_times(sensor) for sensor in each.sensors]] for each in model.drives
+    ]
+    return digest(
+        [versions(), effects_source(), plain(model.study), jsonable(drives), repr(model.settings.of_simulations)]
+    )
+
+
+def _times(sampling: SensorSampling) -> list[Any]:
+    noise = sampling.noise, sampling.discrepancy, sampling.correlation_time
+    return [sampling.sensor, sampling.times.tolist(), *noise]
+
+
+#: The latest forward model of a worker process, by its file.
+_MODEL: dict[Path, ForwardModel] = {}
+#: Full runs by study with its drive: the run of an amended study is the first of the next look.
+_HISTORIES: Cache[Array] = Cache(size=16)
+
+
+def _task(file: Path | None, name: str, arguments: tuple[Any, ...]) -> Any:
+    assert file is not None
+    if file not in _MODEL:
+        _MODEL.clear()
+        _MODEL[file] = pickle.loads(file.read_bytes())
+    return getattr(_MODEL[file], name)(*arguments)
+
+
+def _ready() -> None:
+    """The first task of a worker process: meanwhile it has imported what it needs."""
+
+
+@dataclass(eq=False)
+class WorkerModels:
+    """Worker processes that evaluate one forward model after another; ``folder``: for what they share."""
+
+    pool: Executor
+    folder: Path
+    count: int = 0
+
+    def take(self, model: ForwardModel) -> tuple[ForwardModel, Path]:
+        """The model as the processes have it, sharing strain cycles, and its file."""
+        self.count += 1
+        place = self.folder / str(self.count)
+        place.mkdir()
+        shared = replace(model, folder=place)
+        file = place / "model.pickle"
+        file.write_bytes(pickle.dumps(shared))
+        return shared, file
+
+
+@contextmanager
+def worker_models(count: int) -> Iterator[WorkerModels | None]:
+    """``count`` worker processes for `evaluating`, which start at once; None if one process is enough."""
+    if count <= 1:
+        yield None
+        return
+    with tempfile.TemporaryDirectory(prefix="tyrefem-") as folder, processes(count) as pool:
+        for _ in range(count):
+            pool.submit(_ready)
+        yield WorkerModels(pool, Path(folder))
+
+
+@dataclass(frozen=True, eq=False)
+class Evaluations(Brief):
+    """Evaluations of a forward model, in parallel if there are workers; ``file``: the model, for these.
+
+    Evaluations that ``store`` has from an interrupted diagnosis are not simulated again.
+    """
+
+    model: ForwardModel
+    pool: Executor | None = None
+    store: ProgressStore | None = None
+    file: Path | None = None
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """A pickled copy has the model only, without processes and store."""
+        return Evaluations, (self.model,)
+
+    def of(self, name: str, questions: Sequence[tuple[Any, ...]], tick: Callable[[], None] | None = None) -> list[Any]:
+        """Results of the method ``name`` of `ForwardModel` for several tuples of arguments, in their order."""
+        answers = [self.store.known(name, arguments) if self.store else None for arguments in questions]
+        left = [number for number, answer in enumerate(answers) if answer is None]
+        for _ in range(len(answers) - len(left)):
+            if tick:
+                tick()
+        for number, answer in self._answers(name, {number: questions[number] for number in left}):
+            answers[number] = answer
+            if self.store:
+                self.store.keep(name, questions[number], answer)
+            if tick:
+                tick()
+        return answers
+
+    def histories(self, studies: Sequence[StudyData]) -> list[Array]:
+        """`ForwardModel.history` of every study; those that were run before are not run again."""
+        keys = [study_digest(study) for study in studies]
+        left = {key: study for key, study in zip(keys, studies, strict=True) if key not in _HISTORIES}
+        new = dict(zip(left, self.of("history", [(study,) for study in left.values()]), strict=True))
+
+        def history(key: str, study: StudyData) -> Array:
+            return new[key] if key in new else self.of("history", [(study,)])[0]
+
+        return [_HISTORIES.get(key, partial(history, key, study)) for key, study in zip(keys, studies, strict=True)]
+
+    def _answers(self, name: str, questions: Mapping[int, tuple[Any, ...]]) -> Iterator[tuple[int, Any]]:
+        """Yield (number of the question, result) as the results become ready."""
+        if self.pool is None:
+            for number, arguments in questions.items():
+                yield number, getattr(self.model, name)(*arguments)
+            return
+        futures = {
+            self.pool.submit(_task, self.file, name, arguments): number for number, arguments in questions.items()
+        }
+        for future in as_completed(futures):
+            yield futures[future], future.result()
+
+
+@contextmanager
+def evaluating(
+    model: ForwardModel, workers: int = 1, store: ProgressStore | None = None, pool: WorkerModels | None = None
+) -> Iterator[Evaluations]:
+    """Evaluations of a model in ``workers`` processes, or in those of ``pool``; 1: in this process."""
+    if pool is not None:
+        shared, file = pool.take(model)
+        yield Evaluations(shared, pool.pool, store, file)
+        return
+    with worker_models(workers) as pool:
+        if pool is None:
+            yield Evaluations(model, store=store)
+            return
+        with evaluating(model, workers, store, pool) as evaluations:
+            yield evaluations

@@ -1,0 +1,1 @@
+"""Heat of unknown origin: places, courses in time, evidence."""

@@ -1,0 +1,244 @@
+"""Sources of heat of unknown origin: where they are, with which sign, and when they act; all by evidence."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.brief import Brief
+from tyrefem.diagnose.fitting.materiality import Movement
+from tyrefem.diagnose.heat.courses import CONSTANT, CORRELATED, FREE, PHASE, Course, CourseGrid, constant, courses, free
+from tyrefem.diagnose.heat.evidence import HeatData, ProjectedData, log_mean_exp, shares
+from tyrefem.diagnose.unknowns.heat_patches import ALL_LAYERS
+
+Array = NDArray[np.float64]
+#: A place or a course is stated if its probability is at least this.
+STATED = 0.9
+#: An amount is stated if it differs from zero by more than this many standard deviations.
+CLEAR = 2.0
+#: Sizes of a source, over its prior sd, that are equally probable where places are compared.
+SIZES = (1.0, 3.0, 10.0)
+#: A course whose response differs by less than this share from that of a constant source is no course of its kind.
+SAME = 0.02
+
+
+@dataclass(frozen=True, eq=False)
+class Place(Brief):
+    """A possible place of a source: ``station`` (m) and ``where`` (see `heat_patches`), with the prior ``sd``.
+
+    ``columns`` (n, n_all_knots): whitened response to a source of unit strength at every knot. ``inside``: heat in the
+    rubber, W/m3; else flux through a surface, W/m2.
+    """
+
+    station: float
+    where: str
+    sd: float
+    inside: bool
+    columns: Array
+
+
+@dataclass(frozen=True, eq=False)
+class UnknownSource(Brief):
+    """A source of missing heat (positive), or a place where cooling is missing (negative).
+
+    Parameters
+    ----------
+    station, where, inside : most probable place. amount, sd : W/m3 or W/m2 at full strength, with the best course.
+    stations, depths : probability by station (m), and by where at the station.
+    kind, kinds : most probable course, and the probability of every course.
+    time, time_sd : of the switch or of the ramp's begin, s; NaN for another course.
+    strength, strength_sd : by run (n_knots,) W/m3 or W/m2 over time, for a free course.
+    gain : ln evidence over the other sources alone, averaged over courses.
+    move : largest change of a reading of the fitted runs by the source.
+    """
+
+    station: float
+    where: str
+    inside: bool
+    amount: float
+    sd: float
+    stations: Mapping[float, float]
+    depths: Mapping[str, float]
+    kind: str
+    kinds: Mapping[str, float]
+    time: float
+    time_sd: float
+    strength: tuple[Array, ...]
+    strength_sd: tuple[Array, ...]
+    gain: float
+    move: Movement | None = None
+
+    @property
+    def clear(self) -> bool:
+        """Whether the amount differs from zero by more than two standard deviations."""
+        return abs(self.amount) > CLEAR * self.sd
+
+
+def pursuit(
+    data: ProjectedData, places: Sequence[Place], grid: CourseGrid, most: int, least_gain: float
+) -> list[tuple[Place, Course]]:
+    """The sources that explain the data best, added one at a time while the evidence rises; at least one.
+
+    Heat and sinks are equally probable. Every source is constant in time, or free, whichever has more evidence.
+    """
+    kinds = (constant(grid), *(free(grid, share * float(grid.ends.max())) for share in CORRELATED))
+    chosen: list[tuple[Place, Course]] = []
+    best = 0.0
+    while len(chosen) < most:
+        left = [place for place in places if all(place is not other for other, _ in chosen)]
+        gains = [
+            (evidence(data, [*chosen, (place, kind)]), number, which)
+            for number, place in enumerate(left)
+            for which, kind in enumerate(kinds)
+        ]
+        value, number, which = max(gains)
+        if chosen and value < best + least_gain:
+            break
+        best = value
+        chosen.append((left[number], kinds[which]))
+    return chosen
+
+
+def evidence(data: ProjectedData, sources: Sequence[tuple[Place, Course]]) -> float:
+    """ln p(data | sources) - ln p(data | no heat)."""
+    return _joint(data, sources).gain(np.eye(sum(course.factor.shape[1] for _, course in sources)))
+
+
+def misfit(data: ProjectedData, sources: Sequence[tuple[Place, Course]]) -> float:
+    """Misfit that the sources leave, at the best values of all unknowns."""
+    return data.misfit - _joint(data, sources).explained(np.eye(sum(course.factor.shape[1] for _, course in sources)))
+
+
+def _joint(data: ProjectedData, sources: Sequence[tuple[Place, Course]]) -> HeatData:
+    """Statistics of the sources' coefficients, each of unit prior sd."""
+    scaled = [(place, place.sd * course.factor) for place, course in sources]
+    gram = [[left.T @ data.gram(place, other) @ right for other, right in scaled] for place, left in scaled]
+    return HeatData(np.block(gram), np.concatenate([factor.T @ data.overlap(place) for place, factor in scaled]))
+
+
+def place_shares(
+    data: ProjectedData,
+    options: Sequence[Place],
+    others: Sequence[tuple[Place, Course]],
+    grid: CourseGrid,
+) -> dict[tuple[float, str], float]:
+    """(station, where) -> probability of a source's place, averaged over a constant and free courses and over `SIZES`.
+
+    Otherwise the prior's sizes of heat and flux, which have different units, would decide between inside and surface.
+
+    At every station, half of the prior is for heat inside and half for the surfaces. Of the heat inside, half is for
+    all layers together, and half is for single layers.
+    """
+    kinds = (constant(grid), *(free(grid, share * float(grid.ends.max())) for share in CORRELATED))
+    logs: dict[tuple[float, str], float] = {}
+    for place in options:
+        beside = [option.inside for option in options if option.station == place.station]
+        layers = sum(beside) - 1
+        prior = 0.5 / (len(beside) - sum(beside)) if not place.inside else 0.5
+        if place.inside and layers > 0:
+            prior = 0.25 if place.where == ALL_LAYERS else 0.25 / layers
+        logs[place.station, place.where] = math.log(prior) + log_mean_exp(
+            [
+                evidence(data, [*others, (place, replace(kind, factor=size * kind.factor))])
+                for kind in kinds
+                for size in SIZES
+            ]
+        )
+    return shares(logs)
+
+
+def timed(
+    data: ProjectedData,
+    place: Place,
+    others: Sequence[tuple[Place, Course]],
+    grid: CourseGrid,
+    places: Mapping[tuple[float, str], float],
+) -> tuple[UnknownSource, Course]:
+    """A source with its course in time, beside other sources; ``places``: see `place_shares`."""
+    base = evidence(data, others) if others else 0.0
+    by_kind: dict[str, list[tuple[float, Course]]] = {}
+    for course in told_courses(place, grid):
+        by_kind.setdefault(course.kind, []).append((evidence(data, [*others, (place, course)]) - base, course))
+    kinds = shares({kind: log_mean_exp([gain for gain, _ in tried]) for kind, tried in by_kind.items()})
+    kind = next(iter(kinds))
+    _, best = max(by_kind[kind], key=lambda entry: entry[0])
+    time, time_sd = _switch(by_kind[kind])
+    amount, sd = _amount(data, place, best, others)
+    _, loosest = max(by_kind[FREE], key=lambda entry: entry[0])
+    strength, strength_sd = _over_time(data, place, loosest, others, grid)
+    stations: dict[float, float] = {}
+    for (station, _), share in places.items():
+        stations[station] = stations.get(station, 0.0) + share
+    here = sum(share for (station, _), share in places.items() if station == place.station)
+    depths = {where: share / here for (station, where), share in places.items() if station == place.station}
+    gain = log_mean_exp([log_mean_exp([gain for gain, _ in tried]) for tried in by_kind.values()])
+    source = UnknownSource(
+        place.station, place.where, place.inside, amount, sd, stations, depths, kind, kinds, time, time_sd,
+        strength, strength_sd, gain,
+    )  # fmt: skip
+    return source, best
+
+
+def told_courses(place: Place, grid: CourseGrid) -> Iterator[Course]:
+    """The courses that readings can tell from a constant source at a place, and the constant one.
+
+    Heat while the tyre rolls that ends after the last rolling, say, is constant heat.
+    """
+    plain = place.columns @ constant(grid).strength
+    rolling = grid.rolling_phases if place.inside else ()
+    for course in courses(grid):
+        # Heat in the only phase that rolls is constant heat.
+        phase = place.inside and course.kind.startswith(PHASE)
+        if phase and (len(rolling) < 2 or course.kind.removeprefix(PHASE) not in rolling):
+            continue
+        if course.strength.size and course.kind != CONSTANT:
+            response = place.columns @ course.strength
+            if min(np.linalg.norm(response), np.linalg.norm(response - plain)) < SAME * np.linalg.norm(plain):
+                continue
+        yield course
+
+
+def _switch(tried: Sequence[tuple[float, Course]]) -> tuple[float, float]:
+    """Mean and standard deviation of the time of a switch, s; at least the share of the spacing between two times."""
+    times = np.array([math.nan if course.time is None else course.time for _, course in tried])
+    if np.isnan(times).any():
+        return math.nan, math.nan
+    weights = np.exp(np.array([gain for gain, _ in tried]) - max(gain for gain, _ in tried))
+    weights /= weights.sum()
+    mean = float(weights @ times)
+    spacing = float(np.diff(times).min()) if len(times) > 1 else 0.0
+    return mean, math.sqrt(float(weights @ (times - mean) ** 2) + spacing**2 / 12)
+
+
+def _amount(
+    data: ProjectedData, place: Place, course: Course, others: Sequence[tuple[Place, Course]]
+) -> tuple[float, float]:
+    """Amount at full strength, mean over the runs, and its standard deviation; of a free course the mean over time."""
+    statistics = _joint(data, [(place, course), *others])
+    count = course.factor.shape[1]
+    total = sum(other.factor.shape[1] for _, other in others) + count
+    mean, covariance = statistics.posterior(np.eye(total))
+    if course.strength.size:
+        # The coefficients are the strength of all runs, and the runs' deviations from it.
+        share = course.factor.T @ course.strength / (course.strength @ course.strength)
+    else:
+        share = course.factor.mean(axis=0)
+    share = share * place.sd
+    return float(share @ mean[:count]), float(np.sqrt(share @ covariance[:count, :count] @ share))
+
+
+def _over_time(
+    data: ProjectedData, place: Place, course: Course, others: Sequence[tuple[Place, Course]], grid: CourseGrid
+) -> tuple[tuple[Array, ...], tuple[Array, ...]]:
+    """By run (n_knots,): strength over time and its standard deviation."""
+    statistics = _joint(data, [(place, course), *others])
+    count = course.factor.shape[1]
+    mean, covariance = statistics.posterior(np.eye(len(statistics.overlap)))
+    factor = place.sd * course.factor
+    strength = factor @ mean[:count]
+    sd = np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", factor, covariance[:count, :count], factor), 0.0))
+    return tuple(strength[part] for part in grid.parts()), tuple(sd[part] for part in grid.parts())

@@ -1,0 +1,1 @@
+"""Bayesian inference in linear models: evidence, posterior, errors that readings share."""

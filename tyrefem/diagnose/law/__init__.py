@@ -1,0 +1,1 @@
+"""The law of missing heat over the runs."""

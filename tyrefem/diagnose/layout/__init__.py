@@ -1,0 +1,1 @@
+"""What sensors and runs can tell before a test: isolability, calibration."""

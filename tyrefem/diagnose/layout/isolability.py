@@ -1,0 +1,384 @@
+"""Identifiability before any data: which effects the sensors and runs can distinguish, and from what amplitude."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from bisect import bisect_left
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.compare.experiment import OUTSIDE_THE_RUBBER
+from tyrefem.diagnose.data.sensitivities import Sensitivities, responses, sensitivities, unknowns_of
+from tyrefem.diagnose.forward.effort import SENSITIVITIES, check_effort
+from tyrefem.diagnose.forward.evaluations import Evaluations, ProgressStore, evaluating
+from tyrefem.diagnose.forward.forward_model import DriveResponse, ForwardModel
+from tyrefem.diagnose.forward.sampling import DriveSampling, SensorSampling
+from tyrefem.diagnose.inference.linear_model import LinearModel
+from tyrefem.diagnose.unknowns.candidates import Candidate, Members, SetPrior, catalogue_candidates
+from tyrefem.errors import InputError
+from tyrefem.inputs.study import StudyData
+from tyrefem.inputs.study_plugins import plugin_summary
+from tyrefem.quantity import convert
+from tyrefem.requirements import Requirements
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Array = NDArray[np.float64]
+#: What a study must have for isolability.
+NEEDS = Requirements("isolability", fitted=True)
+#: Lead m (nats, without noise) of the true set over every other set. With it, noise brings the probability of the true
+#: set below 90 % in one case of twenty: m - 1.645 sqrt(2 m) > ln 9.
+MARGIN = 9.3
+#: Assumed interval between two readings, s.
+READING_INTERVAL = 10.0
+
+
+def planned(study: StudyData, sensors: Sequence[str] = ()) -> tuple[DriveSampling, ...]:
+    """The planned runs: the study's ``[[measured]]`` entries, or its drive, with all sensors read every 10 s.
+
+    Raises
+    ------
+    InputError : a drive is shorter than the interval between two readings.
+    """
+    entries = study.measured
+    plans = [(entry.run or f"run {n + 1}", dict(entry.drive), entry.hold_out) for n, entry in enumerate(entries)]
+    samplings = []
+    for name, drive, hold_out in plans or [("the study's own drive", {}, False)]:
+        driven = study.with_drive(drive) if drive else study
+        if driven.card.drive.end < READING_INTERVAL:
+            least = f"it must last at least {READING_INTERVAL:g} s, the interval between two readings"
+            message = f"{name} lasts {driven.card.drive.end:g} s; {least}"
+            raise InputError(message, field="drive", file=study.file)
+        times = np.arange(0.0, driven.card.drive.end + READING_INTERVAL / 2, READING_INTERVAL)
+        choice = study.card.diagnosis
+        names = list(sensors) or [*study.sensors, OUTSIDE_THE_RUBBER[0]]
+        sampled = tuple(
+            SensorSampling(
+                sensor,
+                times,
+                study.sensors[sensor].noise if sensor in study.sensors else 0.5,
+                choice.discrepancy,
+                choice.correlation_time,
+            )
+            for sensor in names
+        )
+        samplings.append(DriveSampling(name, drive, hold_out, sampled))
+    return tuple(samplings)
+
+
+def layout_notes(study: StudyData) -> tuple[str, ...]:
+    """Sentences on sensors and runs that the study lacks, and what `planned` takes instead."""
+    notes = []
+    if not study.sensors:
+        notes.append("The study has no [sensors]: only the contained air is read.")
+    if not study.measured:
+        notes.append("The study has no [[measured]] runs: its drive is the only run.")
+    return tuple(notes)
+
+
+@dataclass(frozen=True, eq=False)
+class Isolability:
+    """Effects that a layout of sensors and runs can identify.
+
+    Parameters
+    ----------
+    study : name of the study. candidates : the n effects.
+    smallest : (n,) amplitude, in the effect's unit, from which the effect is distinguished from all others; infinite
+        if no amplitude within its bounds is enough. seen : the same for the effect against no effect.
+    scale : (n,) prior sd of the amplitude. competitors : (n,) the set that needs the largest amplitude to rule out.
+    separation : (n, n) nats by which effect i at its scale is ahead of effect j fitted to the same data.
+    runs : smallest sufficient sets of runs. notes : sentences on sensors and runs that the study lacks.
+    plugins : the user's own effects and laws that take part, as in a ``summary.json``.
+    """
+
+    study: str
+    candidates: tuple[Candidate, ...]
+    smallest: Array
+    seen: Array
+    scale: Array
+    competitors: tuple[str, ...]
+    separation: Array
+    runs: tuple[tuple[str, ...], ...]
+    weights: Array
+    notes: tuple[str, ...] = ()
+    plugins: tuple[dict[str, str], ...] = ()
+
+    @cached_property
+    def table(self) -> pd.DataFrame:
+        """One row per effect: amplitudes from which it is seen, and distinguished from all other effects."""
+        import pandas as pd
+
+        units = [candidate.unknowns[0].unit for candidate in self.candidates]
+        return pd.DataFrame(
+            {
+                "effect": [candidate.key for candidate in self.candidates],
+                "unit": units,
+                "usual": self.scale,
+                "seen_from": self.seen,
+                "told_from": self.smallest,
+                "last_rival": self.competitors,
+                "identifiable_at_usual": self.smallest <= self.scale * (1 + 1e-9),
+            }
+        )
+
+    def _as_written(self) -> pd.DataFrame:
+        """The table with amplitudes in the units of study files: mm, kPa/min, delta_degC/hour."""
+        table = self.table.copy()
+        for row, candidate in enumerate(self.candidates):
+            parameter = candidate.unknowns[0].parameter
+            unit = parameter.prior.written if parameter else None
+            if parameter is None or unit is None:
+                continue
+            table.loc[row, "unit"] = unit
+            for column in ("usual", "seen_from", "told_from"):
+                value = float(self.table[column].iloc[row])
+                table.loc[row, column] = convert(value, parameter.prior.unit, unit) if math.isfinite(value) else value
+        return table
+
+    @cached_property
+    def groups(self) -> tuple[tuple[str, ...], ...]:
+        """Groups of effects that are not distinguished at their usual amplitude, connected by pairs."""
+        n = len(self.candidates)
+        close = (self.separation < MARGIN) & (self.separation.T < MARGIN)
+        left, groups = set(range(n)), []
+        while left:
+            group, queue = set(), [min(left)]
+            while queue:
+                i = queue.pop()
+                if i in group:
+                    continue
+                group.add(i)
+                queue += [j for j in left if close[i, j] and j not in group]
+            left -= group
+            groups.append(tuple(self.candidates[i].key for i in sorted(group)))
+        return tuple(sorted(groups, key=len, reverse=True))
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain data for JSON."""
+        return {
+            "study": self.study,
+            "margin_nats": MARGIN,
+            "effects": self.table.to_dict(orient="records"),
+            "groups": [list(group) for group in self.groups],
+            "fewest_runs": [list(runs) for runs in self.runs],
+            "apart_nats": self.separation.round(2).tolist(),
+            "notes": list(self.notes),
+            "plugins": list(self.plugins),
+        }
+
+    def words(self) -> list[str]:
+        """The results as lines of text: table, effects that are not seen, groups, fewest runs, notes."""
+        table = self.table
+        shown = self._as_written()[["effect", "unit", "usual", "seen_from", "told_from", "last_rival"]]
+        can = table["identifiable_at_usual"]
+        lines = [shown.to_string(index=False, float_format="%.3g")]
+        lines.append(f"{int(can.sum())} of {len(table)} effects are identifiable at their usual amplitude.")
+        never = table.loc[~np.isfinite(table["seen_from"]), "effect"]
+        if len(never):
+            lines.append("Not seen by these sensors and runs at any amplitude: " + ", ".join(never) + ".")
+        together = [", ".join(group) for group in self.groups if len(group) > 1]
+        lines += [f"Not distinguished, or not seen, at the usual amplitude: {names}." for names in together]
+        if self.runs:
+            sets = "; ".join(" + ".join(runs) for runs in self.runs)
+            lines.append(f"Fewest runs that identify the same effects: {sets}.")
+        return [*lines, *self.notes]
+
+
+def margins(
+    linear: LinearModel, signal: Array, true: Members, competitors: Sequence[Members], prior: SetPrior
+) -> list[float]:
+    """Lead (nats) of the set ``true`` over each competitor for the data ``signal``, without noise."""
+    given = linear.with_data(signal)
+    of_true = prior(true) + given.log_evidence(true)
+    return [of_true - prior(members) - given.log_evidence(members) for members in competitors]
+
+
+def competitors_of(true: Members, candidates: Sequence[Candidate]) -> list[Members]:
+    """The sets that compete with the true set: no effect, every other single effect, every subset of the true set."""
+    sets: list[Members] = [()]
+    sets += [(candidate,) for candidate in candidates if candidate not in true]
+    for size in range(1, len(true)):
+        sets += list(itertools.combinations(true, size))
+    return sets
+
+
+def candidates_of(study: StudyData) -> tuple[Candidate, ...]:
+    """The effects that a study may lack.
+
+    Raises
+    ------
+    InputError : there is none.
+    """
+    candidates = catalogue_candidates(study)
+    if not candidates:
+        message = "no effect of the catalogue is left that the study may lack: exclude fewer"
+        raise InputError(message, field="diagnosis.exclude", file=study.file)
+    return candidates
+
+
+def isolability(
+    study: StudyData,
+    *,
+    workers: int = 1,
+    progress: Callable[[str, int, int], None] | None = None,
+    known: Sensitivities | None = None,
+    store: ProgressStore | None = None,
+) -> Isolability:
+    """Effects that the sensors and runs of a study can distinguish, by the linear model about x = 0.
+
+    ``known``: sensitivities of the planned runs, if they are available. ``store``: keeps finished simulations for the
+    next call after an interruption.
+
+    Raises
+    ------
+    InputError : a campaign; every run held out; every effect excluded; a drive that is impossible for the tyre.
+    """
+    NEEDS.check(study)
+    candidates = candidates_of(study)
+    if known is None:
+        known = planned_sensitivities(study, workers=workers, progress=progress, store=store)
+    prior = SetPrior(candidates, study.card.diagnosis.effects_expected)
+    linear = _noiseless(known, known.fitted)
+    n = len(candidates)
+    smallest, seen, last = np.full(n, np.inf), np.full(n, np.inf), [""] * n
+    separation = np.zeros((n, n))
+    for i, candidate in enumerate(candidates):
+        response = _response(linear, candidate)
+        at_scale = margins(linear, response, (candidate,), [(other,) for other in candidates], prior)
+        separation[i] = at_scale
+        smallest[i], last[i] = _threshold(linear, response, candidate, candidates, prior)
+        seen[i], _ = _threshold(linear, response, candidate, (), prior)
+    runs = _fewest_runs(known, candidates, prior, smallest)
+    scale = np.array([candidate.amplitudes[0].sd if candidate.amplitudes else 1.0 for candidate in candidates])
+    shares = np.array([1 / sum(other.name == candidate.name for other in candidates) for candidate in candidates])
+    return Isolability(
+        study.name,
+        candidates,
+        smallest * scale,
+        seen * scale,
+        scale,
+        tuple(last),
+        separation,
+        runs,
+        shares,
+        layout_notes(study),
+        tuple(plugin_summary(study, [candidate.name for candidate in candidates])["plugins"]),
+    )
+
+
+def planned_sensitivities(
+    study: StudyData,
+    *,
+    workers: int = 1,
+    progress: Callable[[str, int, int], None] | None = None,
+    store: ProgressStore | None = None,
+) -> Sensitivities:
+    """Sensitivities of the planned runs of a study; arguments and errors are those of `isolability`."""
+    NEEDS.check(study)
+    candidates_of(study)
+    model = ForwardModel(study, planned(study))
+    check_effort(model, f"the sensitivities of {study.name}", SENSITIVITIES, workers)
+    if store is not None:
+        store.open(model)
+    with evaluating(model, workers, store) as evaluations:
+        return layout_sensitivities(evaluations, progress=progress)
+
+
+def layout_sensitivities(
+    evaluations: Evaluations,
+    responses_at_hand: Sequence[DriveResponse] | None = None,
+    progress: Callable[[str, int, int], None] | None = None,
+) -> Sensitivities:
+    """Sensitivities of the planned runs to all unknowns that their diagnosis may fit."""
+    model = evaluations.model
+    read = {name for drive in model.drives for name in drive.parts()}
+    unknowns, nuisance = unknowns_of(model.study, read, catalogue_candidates(model.study), model.settings)
+    known = responses_at_hand or responses(evaluations, unknowns, progress)
+    return sensitivities(model.drives, unknowns, nuisance, known)
+
+
+def _noiseless(known: Sensitivities, numbers: Sequence[int]) -> LinearModel:
+    """The linear model of some runs with zero data."""
+    design = known.design(numbers)
+    return LinearModel(design, np.zeros(len(design.jacobian)))
+
+
+def _response(linear: LinearModel, candidate: Candidate) -> Array:
+    """Signal of an effect at its usual amplitude: all its amplitudes at one prior sd, on the allowed side."""
+    signal = np.zeros(len(linear.data))
+    for unknown in candidate.presence:
+        signal = signal + linear.jacobian[:, linear.design.place[unknown]]
+    for unknown in candidate.amplitudes:
+        side = 1.0 if unknown.high > 0 else -1.0
+        signal = signal + linear.jacobian[:, linear.design.place[unknown]] * side * min(
+            unknown.sd, abs(side * unknown.high)
+        )
+    return signal
+
+
+def _threshold(
+    linear: LinearModel, response: Array, candidate: Candidate, candidates: Sequence[Candidate], prior: SetPrior
+) -> tuple[float, str]:
+    """Amplitude (prior sd) from which the effect is ahead of all competitors, and the last competitor ruled out."""
+    sets = competitors_of((candidate,), candidates)
+    if not candidate.amplitudes:
+        ahead = margins(linear, response, (candidate,), sets, prior)
+        worst = int(np.argmin(ahead))
+        return 1.0 if ahead[worst] >= MARGIN else math.inf, " + ".join(each.key for each in sets[worst]) or "no effect"
+    unknown = candidate.amplitudes[0]
+    largest = max(abs(unknown.low), abs(unknown.high)) / unknown.sd
+    largest = min(largest, 20.0)
+    values = np.geomspace(0.02, largest, 40) if largest > 0.02 else np.array([largest])
+
+    def last(value: float) -> str | None:
+        """The competitor that is not ruled out, or the closest of them; None if all are."""
+        ahead = margins(linear, value * response, (candidate,), sets, prior)
+        worst = int(np.argmin(ahead))
+        return None if ahead[worst] >= MARGIN else " + ".join(member.key for member in sets[worst]) or "no effect"
+
+    # A lead grows with the square of the amplitude, so bisection finds where it reaches the margin.
+    first, competitor = bisect_left(values, True, key=lambda value: last(value) is None), ""
+    if first > 0:
+        competitor = last(values[first - 1]) or ""
+    if first < len(values):
+        return float(values[first]), competitor
+    return math.inf, competitor
+
+
+def _fewest_runs(
+    known: Sensitivities, candidates: Sequence[Candidate], prior: SetPrior, smallest: Array
+) -> tuple[tuple[str, ...], ...]:
+    """The smallest sets of fitted runs that identify the same effects as all runs, at twice their usual amplitude."""
+    names = [drive.name for drive in known.drives]
+    wanted = [i for i in range(len(candidates)) if smallest[i] <= 2.0]
+    if not wanted:
+        return ()
+    for size in range(1, len(known.fitted) + 1):
+        enough = []
+        for chosen in itertools.combinations(known.fitted, size):
+            linear = _noiseless(known, chosen)
+            ok = all(
+                min(
+                    margins(
+                        linear,
+                        2 * _response(linear, candidates[i]),
+                        (candidates[i],),
+                        competitors_of((candidates[i],), candidates),
+                        prior,
+                    )
+                )
+                >= MARGIN
+                for i in wanted
+            )
+            if ok:
+                enough.append(tuple(names[i] for i in chosen))
+        if enough:
+            return tuple(enough)
+    return ()

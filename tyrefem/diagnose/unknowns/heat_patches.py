@@ -1,0 +1,69 @@
+"""Unknowns for heat of unknown origin: heat and flux patches at stations along the meridian."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from tyrefem.diagnose.settings import DiagnosisSettings
+from tyrefem.diagnose.unknowns.unknown import Choice, Unknown, of_effect
+from tyrefem.effects import catalogue
+from tyrefem.inputs.study import StudyData
+
+#: Where heat may enter at a station: in all layers, or through a surface. A name that is none of these is a region.
+ALL_LAYERS, OUTER, INNER, RIM = "all layers", "outer surface", "inner surface", "rim"
+SURFACES = {OUTER: "outer", INNER: "inner", RIM: "rim"}
+
+
+def patches(study: StudyData, settings: DiagnosisSettings) -> tuple[Unknown, ...]:
+    """Unknown heat (while the tyre rolls) and unknown flux (always) at even stations from crown to bead."""
+    places = stations(study, settings)
+    return tuple(patch(study, settings, station, where) for where in (ALL_LAYERS, OUTER) for station in places)
+
+
+def surface_patches(study: StudyData, settings: DiagnosisSettings) -> tuple[Unknown, ...]:
+    """Unknown flux through the inner surface at every station, and from the rim at the last station."""
+    places = stations(study, settings)
+    inner = [patch(study, settings, station, INNER) for station in places]
+    return (*inner, patch(study, settings, places[-1], RIM))
+
+
+def layer_patches(study: StudyData, settings: DiagnosisSettings, station: float) -> tuple[Unknown, ...]:
+    """Unknown heat in each single region at a station; none if only one region is there."""
+    depths = np.linspace(0.02, 0.98, 49) * float(study.section.total_thickness([station])[0])
+    regions = dict.fromkeys(map(str, study.section.region_at(np.full(49, station), depths)))
+    heated = [region for region in regions if region in study.materials]
+    return tuple(patch(study, settings, station, region) for region in heated) if len(heated) > 1 else ()
+
+
+def stations(study: StudyData, settings: DiagnosisSettings) -> list[float]:
+    """Distances from the crown along the meridian, m."""
+    spacing = study.section.line.length / settings.stations
+    return [round((number + 0.5) * spacing, 6) for number in range(settings.stations)]
+
+
+def patch(study: StudyData, settings: DiagnosisSettings, station: float, where: str) -> Unknown:
+    """The unknown heat or flux about a station."""
+    spacing = study.section.line.length / settings.stations
+    choice: Choice = (("station", f"{station!r} m"), ("width", f"{round(spacing * 0.6, 6)!r} m"))
+    if where in SURFACES:
+        choice += () if where == OUTER else (("surface", SURFACES[where]),)
+        return of_effect(catalogue()["missing-flux"], choice, settings.missing_flux)[0]
+    choice += () if where == ALL_LAYERS else (("region", where),)
+    return of_effect(catalogue()["missing-heat"], choice, settings.missing_heat)[0]
+
+
+def place_of(unknown: Unknown) -> tuple[float, str]:
+    """(station, m; where) of a patch: `ALL_LAYERS`, a surface, or the name of a region."""
+    choice = dict(unknown.choice)
+    station = float(choice["station"].split()[0])
+    if unknown.effect == "missing-heat":
+        return station, choice.get("region", ALL_LAYERS)
+    names = {written: name for name, written in SURFACES.items()}
+    return station, names[choice.get("surface", "outer")]
+
+
+def is_inside(patches: Sequence[Unknown]) -> list[bool]:
+    """Whether each patch is heat inside the rubber, not a flux through a surface."""
+    return [unknown.effect == "missing-heat" for unknown in patches]

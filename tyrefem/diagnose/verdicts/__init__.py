@@ -1,0 +1,1 @@
+"""The verdict on sets of effects, and what it rests on."""

@@ -1,0 +1,128 @@
+"""The verdict beside discrepancy models: effects that act whatever else is wrong, though more is."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import NamedTuple
+
+from tyrefem.diagnose.beside.discrepancy import NONE
+from tyrefem.diagnose.beside.free_heat import FreeHeat
+from tyrefem.diagnose.beside.robustness import Robustness, UnderDiscrepancy
+from tyrefem.diagnose.numbers import at_least, percent
+from tyrefem.diagnose.settings import DiagnosisSettings
+from tyrefem.diagnose.unknowns.candidates import Candidate, Members
+from tyrefem.diagnose.verdicts.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, PARTLY, UNEXPLAINED, Judgement
+
+#: Effects alone, without a discrepancy, are excluded below this probability.
+NOT_EXCLUDED = 0.01
+
+
+class Revision(NamedTuple):
+    """A verdict with what else may be wrong, its ``reasons`` and ``doubts``, and ``members``, the effects that are part
+    of the cause if it is "partly identified"."""
+
+    verdict: str
+    reasons: tuple[str, ...]
+    doubts: tuple[str, ...]
+    members: Members = ()
+
+    def doubted(self, doubt: str) -> Revision:
+        """Unexplained for a further reason."""
+        sentence = f"{doubt[0].upper()}{doubt[1:]}."
+        return Revision(UNEXPLAINED, (*self.reasons, doubt), (*self.doubts, sentence))
+
+
+def beside_discrepancies(
+    judgement: Judgement,
+    robustness: Robustness,
+    settings: DiagnosisSettings,
+    *,
+    law_replaced: bool = False,
+    heat: FreeHeat | None = None,
+) -> Revision:
+    """The verdict with what else may be wrong, and the effects that are part of the cause.
+
+    - *identified* stays if every member acts with at least 90 % probability, averaged over the discrepancy models by
+      their probabilities. *confounded* stays unless the data exclude that effects alone are wrong (`NOT_EXCLUDED`).
+    - *partly identified*: more is wrong than effects, and some act with at least 90 % probability beside every
+      discrepancy model, with amounts that agree; beside the most probable model noise explains the misfit, and the
+      held-out runs are predicted no worse with each of them than without it, and with all of them. Heat of unknown
+      origin does not explain the data by itself.
+      They act in all runs, as the strain energy may differ from run to run, too.
+    - *unexplained*: more is wrong, and there is no such effect.
+
+    ``law_replaced``: the study's strain law was wrong, and another one stands in its place; nothing is "identified".
+    ``heat``: heat of unknown origin without and beside the effects that are about to be named.
+    """
+    revision = Revision(judgement.verdict, judgement.reasons, judgement.doubts)
+    if judgement.verdict == NO_GAP:
+        return revision
+    leading, least = robustness.models[0], settings.named_probability
+    if judgement.verdict == IDENTIFIED:
+        doubtful = [each for each in judgement.best.members if robustness.mean(each.key) < least]
+        if not doubtful and not law_replaced:
+            return revision
+        doubt = _doubt(robustness, doubtful[0]) if doubtful else "the study's strain law is not that of the data"
+        revision = revision.doubted(doubt)
+    elif judgement.verdict == CONFOUNDED:
+        if leading.name == NONE:
+            return revision
+        asked_for = f"the data ask for {leading.words} ({percent(leading.probability)})"
+        if robustness.as_it_is < NOT_EXCLUDED:
+            revision = revision.doubted(asked_for)
+        else:
+            revision = revision._replace(reasons=(*revision.reasons, f"{asked_for}, but do not exclude effects alone"))
+    members = robustness.robust(leading.effects, least)
+    for member in replace(robustness, laws=()).robust(leading.effects, least):
+        if member not in members:
+            law = min(robustness.counted, key=lambda law: law.named.get(member.key, 0.0))
+            reason = f"{member.key} is not named: with {law.words} it is less probable, or of the other sign"
+            revision = revision._replace(reasons=(*revision.reasons, reason))
+    if single := tuple(member for member in members if member.runs):
+        keys = " + ".join(member.key for member in single)
+        runs = ", ".join(dict.fromkeys(run for each in single for run in each.runs))
+        doubt = f"{keys} is not named: no other run tells it from what else differs in {runs}"
+        members = tuple(member for member in members if member not in single)
+        if members or revision.verdict == CONFOUNDED:
+            revision = revision._replace(reasons=(*revision.reasons, doubt))
+        else:
+            revision = revision.doubted(doubt)
+    if not members or len([member for member in members if member not in leading.allowed]) > settings.largest:
+        return revision
+    held_out = tuple(member for member in members if _predicts_held_out(leading, (member,)))
+    if len(held_out) > 1 and not _predicts_held_out(leading, held_out):
+        held_out = ()
+    if held_out != members:
+        keys = " + ".join(member.key for member in members if member not in held_out)
+        doubt = f"{keys} is not named: the held-out runs are predicted better without it"
+        if not held_out:
+            return revision.doubted(doubt)
+        revision, members = revision._replace(reasons=(*revision.reasons, doubt)), held_out
+    if heat is not None and heat.explains(settings.free_heat_lead):
+        keys = " + ".join(member.key for member in members)
+        doubt = f"{keys} is not named: heat of unknown origin explains the data about as well"
+        if revision.verdict == CONFOUNDED:
+            return revision._replace(reasons=(*revision.reasons, doubt))
+        return revision.doubted(doubt)
+    smallest = min(robustness.least(member.key) for member in members)
+    keys = " + ".join(member.key for member in members)
+    reason = f"{keys} acts with {at_least(smallest)} probability whatever else is wrong"
+    return revision._replace(verdict=PARTLY, reasons=(*revision.reasons, reason), members=members)
+
+
+def _doubt(robustness: Robustness, member: Candidate) -> str:
+    """Why a member of an identified set is not needed beside a probable discrepancy."""
+    against = min(robustness.models, key=lambda model: (model.named.get(member.key, 0.0) - 1) * model.probability)
+    return (
+        f"with {against.words}, for which the data speak ({percent(against.probability)}), "
+        f"{member.key} acts with {percent(against.named.get(member.key, 0.0))} only"
+    )
+
+
+def _predicts_held_out(model: UnderDiscrepancy, members: Members) -> bool:
+    """Whether the best fitted set with these effects predicts the held-out runs no worse than any set without one."""
+    if all(math.isnan(fit.held_out) for fit in model.fits.values()):
+        return True
+    with_them, without = model.held_out(members)
+    return with_them >= without

@@ -1,0 +1,153 @@
+"""The law of missing heat in sentences."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from tyrefem.diagnose.heat.courses import BEGINS, ENDS, PHASE, RUN
+from tyrefem.diagnose.heat.sources import CLEAR
+from tyrefem.diagnose.law.places import FILM, FLUX, LOSS, UNITS, WHOLE_SURFACES, LawPlace
+from tyrefem.diagnose.law.terms import ABOVE, DEFLECTION, LOAD, NO_SWITCH, PRESSURE, REST, ROLLING, SPEED, WARM
+from tyrefem.diagnose.numbers import amount, percent
+from tyrefem.diagnose.unknowns.heat_patches import SURFACES, place_of
+from tyrefem.diagnose.verdicts.verdict import PARTLY
+from tyrefem.diagnose.words.heat import station_words
+
+if TYPE_CHECKING:
+    from tyrefem.diagnose.diagnosis import DiagnosisData
+    from tyrefem.diagnose.law.evidence import LawFit
+    from tyrefem.diagnose.law.heat_law import Exponent, PlaceLaw
+    from tyrefem.diagnose.law.search import HeatLaw
+
+#: Unit and factor of a reference in sentences.
+REFERENCES = {
+    SPEED: (1.0, "m/s"), LOAD: (1e-3, "kN"), PRESSURE: (1e-5, "bar"), DEFLECTION: (1e3, "mm"), WARM: (1.0, "°C"),
+    ABOVE: (1.0, "K above ambient"),
+}  # fmt: skip
+#: A law that describes less than this is said to.
+PART = 0.995
+FILM_NAMES = {
+    "road": "film between tread and road", "outside_air": "outside air film",
+    "tread_air": "air film of the tread between two contacts", "contained_air": "film of the contained air",
+    "rim": "film between bead and rim",
+}  # fmt: skip
+
+
+def law_words(d: DiagnosisData) -> tuple[str, ...]:
+    """The law in one to four sentences, without their full stops; empty without a law."""
+    heat = d.law
+    if heat is None:
+        return ()
+    if not heat.holds:
+        return ("No law of speed, load, pressure, temperature and time describes this heat in all runs",)
+    law = heat.law
+    sign = "" if law.amplitude > 0 else "cooling, "
+    heads = {PARTLY: "The heat that is missing beside it has a law over these runs"}
+    head = heads.get(d.verdict, "Its law over these runs")
+    first = f"{head}: {sign}{law_place_words(d, heat.place)}, {law_formula(law)}{_when(heat)}"
+    size = amount(law.amplitude, law.sd, UNITS[heat.place.kind]) if UNITS[heat.place.kind] != "1" else (
+        f"{100 * law.amplitude:+.0f} ± {100 * law.sd:.0f} %"
+    )  # fmt: skip
+    at = [reference_words(law, name) for name in law.fit.terms]
+    part = f"It describes {percent(heat.share)} of what heat with a free course in every run describes"
+    rest = [part] if heat.share < PART else []
+    return (f"{first}: {size}{' at ' + ', '.join(at) if at else ''}", *rest, *limits(law))
+
+
+def limits(law: PlaceLaw) -> list[str]:
+    """What these runs cannot tell of a law."""
+    sentences = []
+    if law.alternatives:
+        others = [fit for fit, _ in law.alternatives if not _adds_nothing(fit, law.fit)]
+        shown = list(dict.fromkeys(_short(fit) for fit in others if _short(fit) != _short(law.fit)))[:3]
+        if shown:
+            sentences.append(f"These runs do not tell it from {', or '.join(shown)}")
+    sentences += [f"{_and(pair).capitalize()} vary together in these runs" for pair in law.together]
+    if law.hardly:
+        verb, of = ("vary", "their exponents") if len(law.hardly) > 1 else ("varies", "its exponent")
+        sentences.append(f"{_and(law.hardly).capitalize()} hardly {verb}, so nothing is known of {of}")
+    return sentences
+
+
+def law_formula(law: PlaceLaw) -> str:
+    """The terms with their intervals: "grows as speed^1.9 ± 0.1 × load^0.4 ± 0.1"."""
+    entries = [law.exponent[name] for name in law.fit.terms]
+    if not entries:
+        return "the same at every speed, load and pressure"
+    verb = "grows" if entries[0].mean > 0 else "changes"
+    return f"{verb} as {' × '.join(_term(entry) for entry in entries)}"
+
+
+def reference_words(law: PlaceLaw, name: str) -> str:
+    """The reference of a term: "speed 12.3 m/s"."""
+    factor, unit = REFERENCES[name]
+    return f"{name.split(' ')[0]} {law.terms.references[name] * factor:.3g} {unit}"
+
+
+def law_place_words(d: DiagnosisData, place: LawPlace) -> str:
+    """Where a law acts."""
+    if place.kind == LOSS:
+        return f"a share of the model's own heat in {place.where}"
+    if place.kind == FILM:
+        return f"a share of the {FILM_NAMES[place.where]}"
+    if place.where in WHOLE_SURFACES:
+        return f"through the {place.where}"
+    station = station_words(d, place.station)
+    if len(stations := dict.fromkeys(place_of(unknown)[0] for unknown, _ in place.parts)) > 1:
+        return " and ".join(station_words(d, each) for each in stations)
+    if place.kind == FLUX:
+        return f"at the {place.where}, {station}" if place.where in SURFACES else station
+    return station
+
+
+def _term(entry: Exponent) -> str:
+    if entry.name == WARM:
+        return f"exp({100 * entry.mean:+.1f} ± {100 * entry.sd:.1f} %/K × temperature)"
+    name = "(temperature above ambient)" if entry.name == ABOVE else entry.name
+    return f"{name}^({entry.mean:.2f} ± {entry.sd:.2f})" if entry.mean < 0 else (
+        f"{name}^{entry.mean:.2f} ± {entry.sd:.2f}"
+    )  # fmt: skip
+
+
+def _short(fit: LawFit) -> str:
+    """A law without intervals, for a list of alternatives."""
+    parts = []
+    for name, mean in zip(fit.terms, fit.mean, strict=True):
+        parts.append(f"exp({100 * mean:+.1f} %/K × temperature)" if name == WARM else f"{name}^{mean:.1f}")
+    when = "" if fit.switch.kind == NO_SWITCH else f", {_kind(fit.switch.kind)}"
+    return f"{' × '.join(parts) or 'constant heat'}{when}"
+
+
+def _adds_nothing(fit: LawFit, best: LawFit) -> bool:
+    """Whether a law is the best one with further terms whose exponents may be 0."""
+    if not set(best.terms) < set(fit.terms) or fit.switch.kind != best.switch.kind:
+        return False
+    further = [number for number, name in enumerate(fit.terms) if name not in best.terms]
+    return all(abs(fit.mean[number]) < CLEAR * fit.sd[number] for number in further)
+
+
+def _when(heat: HeatLaw) -> str:
+    law = heat.law
+    kind, inside = law.fit.switch.kind, heat.place.inside
+    if kind == NO_SWITCH:
+        return ", while the tyre rolls" if inside else ", rolling or not"
+    chance = law.switch_probabilities[kind]
+    doubt = "" if chance >= 0.9 else f" ({percent(chance)})"
+    rolling = ", only while rolling" if inside and not kind.startswith((PHASE, RUN)) else ""
+    time = f" at {law.time:.0f} ± {max(law.time_sd, 1.0):.0f} s" if math.isfinite(law.time) else ""
+    return f"{rolling}, {_kind(kind)}{time}{doubt}"
+
+
+def _kind(kind: str) -> str:
+    if kind.startswith(PHASE):
+        return f"only in the phase {kind.removeprefix(PHASE)}"
+    if kind.startswith(RUN):
+        name = kind.removeprefix(RUN)
+        late = name.endswith(f" {BEGINS}")
+        return f"only in {name.removesuffix(f' {BEGINS}')}" + (", where it begins" if late else "")
+    return {ROLLING: "only while rolling", REST: "only at rest", BEGINS: "it begins", ENDS: "it ends"}[kind]
+
+
+def _and(names: tuple[str, ...]) -> str:
+    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"

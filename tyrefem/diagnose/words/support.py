@@ -1,0 +1,85 @@
+"""How far one sensor or one run alone speaks for the named effects, in words."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from tyrefem.diagnose.fitting.support import ALONE, RUN, LeftOut
+from tyrefem.diagnose.numbers import at_least, percent, run_words
+
+if TYPE_CHECKING:
+    from tyrefem.diagnose.diagnosis import DiagnosisData
+    from tyrefem.diagnose.unknowns.candidates import Members
+
+
+def stated_words(d: DiagnosisData, members: Members, chance: float, text: str) -> str:
+    """A set at the confidence of its weakest member, as a clause: "It is at least 97 % probable ...".
+
+    ``chance``: probability of the set with all readings, ``text``: the same in words. An effect that only one sensor or
+    run asks for is said to be that.
+    """
+    subject = "They are together" if len(members) > 1 else "It is"
+    weakest = _weakest(d)
+    if weakest is None:
+        return f"{subject} {text} probable"
+    key, left = weakest
+    least = left.probability
+    if least < ALONE:
+        alone = f"without {_named(left)}, which alone asks for {key}"
+        return f"{subject} only {percent(least)} probable {alone}; with all readings {text}"
+    where = f"without any one sensor or run (least without {_named(left)})"
+    lower = at_least(least)
+    if least >= chance or lower.removeprefix("at least ") == text.removeprefix("at least "):
+        return f"{subject} {text} probable, also {where}"
+    return f"{subject} {lower} probable {where}; with all readings {text}"
+
+
+def alone_words(d: DiagnosisData, *, further: bool = False) -> tuple[str, ...]:
+    """A sentence on every named effect that only one sensor or run asks for, or that can show only there.
+
+    ``further``: without the weakest of them, which `stated_words` has.
+    """
+    sentences = []
+    stated = _weakest(d) if further else None
+    for member, support in d.supports.items():
+        weakest = support.weakest
+        if stated is not None and stated[0] == member.key and stated[1].probability < ALONE:
+            continue
+        if support.only_at:
+            sentences.append(f"{member.key} can show only {_where(support.only_at, d)}.")
+        elif support.only and weakest is not None:
+            sentences.append(
+                f"Only {_named(weakest)} asks for {member.key}: without it the probability is "
+                f"{percent(weakest.probability)}."
+            )
+    return tuple(sentences)
+
+
+def support_words(d: DiagnosisData) -> tuple[str, ...]:
+    """The weakest support of the named effects, then every effect that only one sensor or run asks for."""
+    alone = alone_words(d)
+    known = [left for support in d.supports.values() if (left := support.weakest) is not None]
+    shared = [(left.probability, left) for left in known if left.probability >= ALONE]
+    if not shared:
+        return alone
+    least, weakest = min(shared, key=lambda pair: pair[0])
+    others = "The other effects stay" if alone and len(d.supports) > len(shared) else "They stay"
+    subject = "It stays" if len(d.supports) == 1 else others
+    without = f"without any one sensor or run (least without {_named(weakest)})"
+    first = f"{subject} {at_least(least)} probable {without}."
+    return (first, *alone)
+
+
+def _weakest(d: DiagnosisData) -> tuple[str, LeftOut] | None:
+    """The named effect with the smallest probability without one sensor or run, and this one."""
+    known = [(member.key, left) for member, each in d.supports.items() if (left := each.weakest) is not None]
+    return min(known, key=lambda pair: pair[1].probability, default=None)
+
+
+def _named(left: LeftOut) -> str:
+    return run_words(left.name) if left.kind == RUN else left.name
+
+
+def _where(place: str, d: DiagnosisData) -> str:
+    runs = {run.name for run in d.gap.runs}
+    return f"in {run_words(place)}" if place in runs else f"at {place}"
