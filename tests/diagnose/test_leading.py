@@ -10,6 +10,7 @@ import pytest
 from formula import STATED, Array, Case, case, effect, slopes
 
 from tyrefem.diagnose.fitting.criterion import LogEvidence
+from tyrefem.diagnose.fitting.exhaustive import Exhaustive
 from tyrefem.diagnose.fitting.fits import FittedSet
 from tyrefem.diagnose.fitting.forward_selection import ForwardSelection
 from tyrefem.diagnose.fitting.selection import ScoredSet, SelectionProblem
@@ -104,3 +105,32 @@ def test_hopeless_fits_are_not_continued() -> None:
     assert entries[0].fit is not None
     assert entries[0].fit.misfit > DEFAULT.slow_misfit * N
     assert pytest.approx(0.0) == entries[0].fit.p_value
+
+
+def test_a_part_of_the_best_set_that_was_fitted_badly_is_fitted_from_it() -> None:
+    candidates = (effect("strong"), effect("spare"))
+
+    def law(values: Mapping[str, float]) -> Array:
+        heat = 10.0 * values.get(STATED.key, 0.0) * np.sqrt(T)
+        return np.asarray(heat + 60.0 * np.tanh(values.get("strong", 0.0) / 3.0) * T + values.get("spare", 0.0) * T**4)
+
+    made = case(law, law({"strong": 5.0}) + np.random.default_rng(3).normal(size=N), candidates)
+    problem = SelectionProblem(made.residuals, made.predictions, candidates, SetPrior(candidates, 0.5), LogEvidence())
+    sound = problem.settled(Exhaustive().search(problem))
+    alone, both = candidates[:1], candidates
+    assert sound[0].members == alone
+    # The single effect as a fit leaves it that ended after its first step, without credit for further ones.
+    hasty = replace(problem, residuals=replace(made.residuals, settings=DiagnosisSettings(first_steps=1)))
+    (stuck,) = hasty.fitted([alone], {})
+    stuck = replace(stuck, log_evidence=stuck.log_evidence - stuck.state.predicted_reduction / 2)
+    assert not stuck.worth_settling
+    rows = [ScoredSet(problem.score(stuck), alone, stuck) if row.members == alone else row for row in sound]
+    rows.sort(key=lambda row: -row.score)
+    assert rows[0].members == both
+    mended = problem.settled(rows)
+    assert mended[0].members == alone
+    assert mended[0].score == pytest.approx(sound[0].score, abs=0.3)
+    # Sound fits of parts stay as they are.
+    count = len(made.formula.questions)
+    assert problem.settled(mended) == mended
+    assert len(made.formula.questions) == count

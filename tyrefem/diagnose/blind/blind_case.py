@@ -36,6 +36,8 @@ ORDINARY, STRUCTURAL = "ordinary", "structural"
 DATA_MODELS = (ORDINARY, STRUCTURAL)
 #: Most effects in a set: two are hidden, and in structural data speed laws of films differ besides.
 LARGEST = {ORDINARY: 2, STRUCTURAL: 3}
+#: Effects that came after the recorded cases: never hidden, so that a seed keeps its cases; every diagnosis tries them.
+NEVER_HIDDEN = ("wind",)
 #: Number of leading sets in a row of ``blind.json``.
 LEADING = 4
 #: Stream of random numbers of the structural differences: the hidden causes are those of the ordinary case.
@@ -75,7 +77,7 @@ def cases(study: StudyData, count: int, seed: int) -> list[BlindCase]:
     deviations. If the study has fewer than two physical candidates, cases of kind "two" become cases of kind "one".
     """
     candidates = catalogue_candidates(study)
-    names = sorted({candidate.name for candidate in candidates})
+    names = sorted({candidate.name for candidate in candidates} - set(NEVER_HIDDEN))
     physical = [
         name for name in names if next(each for each in candidates if each.name == name).effect.family != "measurement"
     ]

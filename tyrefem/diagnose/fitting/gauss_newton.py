@@ -188,7 +188,7 @@ class FitState(Brief):
         )
 
     def continued(self) -> FitState:
-        """The state that continues this fit with new tangents and more steps."""
+        """The state that continues this fit with new tangents and more steps; x is simulated first if it was not."""
         settings = self.settings
         further = replace(
             self,
@@ -198,7 +198,7 @@ class FitState(Brief):
             limit=self.steps + settings.more_steps,
             radius=max(self.radius, 1.0),
         )
-        return further._requesting_tangents(further.shapes)
+        return further._requesting_tangents(further.shapes) if self.simulated else replace(further, next_point=self.x)
 
     def beside(self, unknowns: Sequence[Unknown], r: Array, J: Array) -> FitState:
         """The state at the same point with further unknowns at 0, beside another covariance of the readings.
@@ -217,6 +217,7 @@ class FitState(Brief):
             tangents=0,
             limit=self.steps + self.settings.beside_steps,
             radius=self.settings.trust,
+            simulated=True,
         )
         return further.proposed()
 
@@ -232,6 +233,7 @@ class FitState(Brief):
             x=self.x[kept],
             r=self.r + self.J[:, ~kept] @ self.x[~kept],
             J=self.J[:, kept],
+            simulated=False,
         )
 
     def with_jacobian(self, J: Array) -> FitState:

@@ -108,17 +108,21 @@ class SelectionProblem(Brief):
         gap = scored[0].score - max((entry.score for entry in scored if entry.fit is None), default=float("-inf"))
         changed = False
         for _ in range(settings.most_settlings):
-            top = max(entry.score for entry in rows.values() if entry.fit is not None)
+            fits = {members: entry.fit for members, entry in rows.items() if entry.fit is not None}
+            top = max(rows[members].score for members in fits)
             left = [
-                entry.fit
-                for entry in rows.values()
-                if entry.fit is not None and entry.score > top - settings.leading_score and entry.fit.worth_settling
+                fit
+                for members, fit in fits.items()
+                if rows[members].score > top - settings.leading_score and fit.worth_settling
             ]
+            left += self._stuck_parts(rows)
             if not left:
                 break
             changed = True
             for fit in self.continued(left):
-                rows[self.ordered(fit.members)] = ScoredSet(self.score(fit), fit.members, fit)
+                members, score = self.ordered(fit.members), self.score(fit)
+                if members not in fits or fits[members] in left or score > rows[members].score:
+                    rows[members] = ScoredSet(score, members, fit)
         if not changed:
             return list(scored)
         highest = max(entry.score for entry in rows.values() if entry.fit is not None) - max(gap, 0.0)
@@ -127,6 +131,29 @@ class SelectionProblem(Brief):
             for entry in rows.values()
         )
         return sorted(capped, key=lambda entry: -entry.score)
+
+    def _stuck_parts(self, rows: Mapping[Members, ScoredSet]) -> list[FittedSet]:
+        """Starts for parts of the best set whose fits ended far from their best points.
+
+        The linear model about the best fit, without one effect, predicts the score of the rest. Where it is among the
+        leading ones, and more than ``near_score`` above that of the rest's own fit, the fit of the rest must start
+        there: else the effect would be named because the rest was fitted badly.
+        """
+        settings = self.settings
+        best = max((entry for entry in rows.values() if entry.fit is not None), key=lambda entry: entry.score)
+        parts = []
+        for member in best.members if best.fit is not None else ():
+            if best.fit is None or member.presence:
+                continue
+            part = best.fit.without([member])
+            members = self.ordered(part.members)
+            gain = self.criterion.of_linear(part.linear, ()) - self.criterion.of_linear(best.fit.linear, ())
+            score = best.score + gain + self.prior(members) - self.prior(best.members)
+            known = rows.get(members)
+            beyond = known is None or known.fit is None or score > known.score + settings.near_score
+            if score > best.score - settings.leading_score and beyond:
+                parts.append(part)
+        return parts
 
     def settled_fit(self, fit: FittedSet) -> FittedSet:
         """A fit continued until it has converged with sensitivities taken at its point, if it gets there."""
