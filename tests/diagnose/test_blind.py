@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import tyrefem as tf
+from tyrefem.diagnose.blind import rates as blind_rates
 from tyrefem.diagnose.blind.blind_case import KINDS, cases
-from tyrefem.diagnose.blind.blind_case import rates as blind_rates
 from tyrefem.diagnose.blind.rates import Blind, BlindTest, Rate
 from tyrefem.diagnose.blind.synthetic import backward
 from tyrefem.reports import blind as blind_picture

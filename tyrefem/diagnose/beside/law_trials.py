@@ -109,10 +109,10 @@ class BetterLaw(Brief):
 def law_trials(residuals: Residuals, evaluations: Evaluations) -> tuple[LawTrial, ...]:
     """Every other strain law that the study can run, the most probable first.
 
-    A law that presses the tyre on the road, or needs further inputs, is not tried.
+    A law that needs further inputs is not tried; one that presses the tyre on the road does so in linear motion.
     """
     stated = residuals.study.card.mechanics.strain
-    laws = [name for name, law in strain_laws().items() if name != stated and law.compared and not law.presses]
+    laws = [name for name, law in strain_laws().items() if name != stated and law.compared]
     trials = [trial for law in laws if (trial := _trial(residuals, evaluations, law)) is not None]
     return tuple(sorted(trials, key=lambda trial: -trial.gain))
 

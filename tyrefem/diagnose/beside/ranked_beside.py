@@ -457,8 +457,8 @@ def _further(known: RankedBeside, discrepancy: Discrepancy) -> bool:
 def beside_strain_laws(problem: SelectionProblem, robust: Robustness, fits: Sequence[FittedSet]) -> Robustness:
     """The sets of some fits, and those with one effect more or less, ranked again beside every other strain law.
 
-    The fits are without a discrepancy. A law that presses the tyre on the road costs too much and is not tried, nor is
-    one that the study cannot run, or that needs further inputs.
+    The fits are without a discrepancy. A law that the study cannot run, or that needs further inputs, is not tried; one
+    that presses the tyre on the road does so in linear motion.
     """
     residuals, evaluations = problem.residuals, problem.predictions.evaluations
     largest = max([fit.members for fit in fits], key=len)
@@ -468,8 +468,8 @@ def beside_strain_laws(problem: SelectionProblem, robust: Robustness, fits: Sequ
     for name, law in strain_laws().items():
         if name == residuals.study.card.mechanics.strain or not law.compared:
             continue
-        answers = [] if law.presses else evaluations.of("change_by_law", [(number, name) for number in numbers])
-        if not answers or not all(np.isfinite(change).all() for change in answers):
+        answers = evaluations.of("change_by_law", [(number, name) for number in numbers])
+        if not all(np.isfinite(change).all() for change in answers):
             untried.append(name)
             continue
         beside = RankedBeside(problem, beside_law(residuals, name, answers), named)
