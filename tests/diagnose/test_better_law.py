@@ -15,6 +15,7 @@ from formula import case as formula_case
 from formula import effect
 from hidden import Case, study
 from made_up import judged
+from scipy.special import chdtri
 
 from tyrefem.diagnose import DiagnosisData
 from tyrefem.diagnose.beside.discrepancy import NONE
@@ -79,12 +80,14 @@ def test_a_law_by_finite_elements_is_diagnosed_on_a_coarse_mesh() -> None:
 
 
 class Laws:
-    """Answers of a forward model: the barrel heats by 10 K more at the first readings."""
+    """Answers of a forward model: the barrel heats by 10 K more at the first readings; elements find no tyre."""
 
     def of(self, name: str, questions: list[tuple[Any, ...]], tick: object = None) -> list[np.ndarray]:
         if name == "heat_by_law":
-            return [np.ones((2, STRETCHES)) * [[2.0], [1.0]]]
+            ((_, law, _),) = questions
+            return [np.ones((2, STRETCHES)) * ([[2.0], [1.0]] if law == "barrel" else np.nan)]
         assert name == "change_by_law"
+        assert {law for _, law, _, _ in questions} == {"barrel"}
         assert all(level == pytest.approx(math.log(2.0)) for _, _, level, _ in questions)
         return [10.0 * (np.arange(40) < 20) for _ in questions]
 
@@ -129,6 +132,29 @@ def test_another_law_is_taken_only_if_evidence_and_held_out_runs_speak_for_it(
     assert result.verdict == (PARTLY if taken else UNEXPLAINED)
     assert result.before is stated.before
     assert result.original is stated.original
+
+
+@pytest.mark.parametrize(
+    ("stated_p", "p", "held_out_p", "taken"),
+    [(1e-9, 0.3, 0.2, True), (1e-3, 0.3, 0.2, False), (1e-9, 1e-9, 0.2, False), (1e-9, 0.3, 1e-6, False)],
+)
+def test_held_out_runs_are_no_race_with_a_law_whose_fitted_runs_refute_it(
+    case: Case, stated_p: float, p: float, held_out_p: float, taken: bool
+) -> None:
+    def with_p(d: DiagnosisData, p: float) -> DiagnosisData:
+        """The diagnosis with this probability of the misfit in the fitted runs."""
+        assert d.robustness is not None
+        (model,) = d.robustness.models
+        ((members, fit),) = model.fits.items()
+        fit = replace(fit, misfit=float(chdtri(fit.readings, p)), held_out_p=held_out_p)
+        return replace(d, robustness=replace(d.robustness, models=(replace(model, fits={members: fit}),)))
+
+    stated = with_p(with_evidence(case.diagnosis, UNEXPLAINED, -100.0, -50.0), stated_p)
+    other = with_p(with_evidence(case.diagnosis, PARTLY, -100.0 + 2 * CLEARLY, -55.0), p)
+    result = by_better_law(stated, other, TRIAL)
+    assert (result.better_law is not None) is taken
+    if taken:
+        assert "noise explains the held-out runs by barrel, but not the fitted runs by arcs" in headline(result)[1]
 
 
 def test_words_page_and_record_tell_the_law_and_the_effect(case: Case) -> None:

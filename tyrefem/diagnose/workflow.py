@@ -136,14 +136,18 @@ def diagnose(study: StudyData, table: Table | None = None, **options: Unpack[Dia
 def _look_by_laws(
     study: StudyData, table: Table | None, columns: ColumnNames, method: Method, work: SimulationWork
 ) -> DiagnosisData:
-    """One diagnosis; by another strain law if the study's does not explain the data and they clearly prefer it."""
+    """One diagnosis; by another strain law if the study's does not explain the data and they clearly prefer it.
+
+    The law that leaves the smallest rms comes first.
+    """
     stated = _look(study, table, columns, method, work)
-    trial = next((each for each in stated.law_trials if each.promising), None)
-    if trial is None:
-        return stated
-    replaced = by_law(study, trial.law, trial.level)
-    other = _look(replaced, table, columns, method.by_law(trial.law), work.by_law(trial.law), law_replaced=True)
-    return by_better_law(stated, other, trial)
+    for trial in sorted((each for each in stated.law_trials if each.promising), key=lambda each: each.rms):
+        replaced = by_law(study, trial.law, trial.level)
+        other = _look(replaced, table, columns, method.by_law(trial.law), work.by_law(trial.law), law_replaced=True)
+        result = by_better_law(stated, other, trial)
+        if result.better_law is not None:
+            return result
+    return stated
 
 
 def _further_look(

@@ -101,7 +101,13 @@ def times_words(ratio: float) -> str:
 def law_sure(better: BetterLaw) -> str:
     """How sure the better law is; without the last full stop."""
     chance = percent(1 / (1 + math.exp(-better.log_odds)))
-    held_out = "" if math.isnan(better.held_out_lead) else ", and it predicts the held-out runs better"
+    held_out = ""
+    if better.held_out_lead >= 0:
+        held_out = ", and it predicts the held-out runs better"
+    elif better.held_out_lead < 0:
+        held_out = (
+            f"; noise explains the held-out runs by {better.trial.law}, but not the fitted runs by {better.stated}"
+        )
     return f"Of the two laws the data prefer {better.trial.law} ({chance}, whatever effects act){held_out}"
 
 
