@@ -109,3 +109,13 @@ def test_large_motion_says_what_it_takes_and_what_the_quick_look_would() -> None
         assert (run.beginning, run.quick_look(lambda _: 1.0)) == ("", "")
     # Nothing is gained where temperatures take the time.
     assert large.quick_look(lambda run: run.mechanics.time + 1e6) == ""
+
+
+def test_a_law_that_does_not_press_is_not_counted_as_large_motion() -> None:
+    barrel, linear, large = (
+        RunEstimate.of(tyrefem.study(NASA).replace({"mechanics.strain": law, "mechanics.motion": motion}))
+        for law, motion in (("barrel", "large"), ("fem", "linear"), ("fem", "large"))
+    )
+    assert barrel.mechanics == linear.mechanics
+    assert barrel.beginning == ""
+    assert large.mechanics.time > 3 * barrel.mechanics.time

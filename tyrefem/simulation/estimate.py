@@ -81,8 +81,12 @@ class RunEstimate:
         )
         rolled = len({case for case in loads if case[-1] is not None})
         return estimate.mechanics(
-            nodes, len(pressures) * again, len(loads) * again, large=card.mechanics.motion == "large"
+            nodes, len(pressures) * again, len(loads) * again, large=self._presses_in_large_motion
         ) + estimate.rolling(nodes, len(pressures) * again if rolled else 0, rolled * again)
+
+    @property
+    def _presses_in_large_motion(self) -> bool:
+        return strain_law(self.study).presses and self.study.card.mechanics.motion == "large"
 
     @property
     def _runs(self) -> int:
@@ -139,13 +143,13 @@ class RunEstimate:
     def beginning(self) -> str:
         """What a run does before its first time step, if that takes long: footprints in large motion."""
         time = self.mechanics.time
-        if time < WORTH_TELLING or self.study.card.mechanics.motion == "linear":
+        if time < WORTH_TELLING or not self._presses_in_large_motion:
             return ""
         return f", first its strain cycles in large motion: about {estimate.duration(time)}"
 
     def quick_look(self, time: Callable[[RunEstimate], float]) -> str:
         """What work takes with a linear footprint; empty if that does not halve it. ``time``: s of the work."""
-        if not strain_law(self.study).presses or self.study.card.mechanics.motion == "linear":
+        if not self._presses_in_large_motion:
             return ""
         linear = time(RunEstimate(self.study.replace({"mechanics.motion": "linear"}), self.mesh))
         return f"; {QUICK_LOOK}: {estimate.duration(linear)}" if linear < time(self) / 2 else ""
