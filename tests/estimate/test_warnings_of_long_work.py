@@ -25,7 +25,7 @@ STOP = "work begins"
 BEGINNINGS = (
     "simulation.run.simulate",
     "sweep.evaluation.VariantEvaluation._train_model", "sweep.evaluation.VariantEvaluation._run_in_full",
-    "realtime.certificate.RollingTyre", "diagnose.blind_rates.evaluating", "mechanics.solid.inflation.inflate",
+    "realtime.certificate.RollingTyre", "diagnose.blind.rates.evaluating", "mechanics.solid.inflation.inflate",
 )  # fmt: skip
 
 
