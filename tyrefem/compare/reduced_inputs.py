@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from tyrefem.compare.interface import Computed
-from tyrefem.compare.runs import Key, Runs, Work
+from tyrefem.compare.packed_drive import Work, nearby_cycles
+from tyrefem.compare.runs import Key, Runs
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
 from tyrefem.mechanics.cycle_schedule import same_cycles
@@ -53,13 +54,17 @@ DEFAULT = ReducedInputSettings()
 def reducible(studies: Mapping[Key, StudyData]) -> dict[Key, StudyData]:
     """The runs for which a reduced model saves time.
 
-    With strain cycles by finite elements these are the runs with the strain cycle of their drive. An input that changes
-    the strain cycle needs a new finite-element solution in any case, and further solutions as training data.
+    With strain cycles by finite elements these are the runs with the strain cycle of their drive, and those whose
+    cycles start from it: these need one solution each, training data none. Other changed cycles need a new solution in
+    any case, and further ones as training data.
     """
     return {
         (drive, name): study
         for (drive, name), study in studies.items()
-        if not strain_law(study).by_elements or name is None or same_cycles(study, studies[drive, None])
+        if name is None
+        or not strain_law(study).by_elements
+        or same_cycles(study, studies[drive, None])
+        or nearby_cycles(study, studies[drive, None])
     }
 
 
@@ -167,6 +172,7 @@ class ReducedInputRuns:
                 raise NotReducibleError(f"another mesh{f' at the drive {drive}' if drive else ''}")
         if len({sample.fields.shape[1] for sample in runs.training} | {self.base.problem.operators.size}) > 1:
             raise NotReducibleError("another mesh")
+        runs.solve_cycles(self.changed)
         model, worst = trained(self.base, runs.training, self._fineness), np.inf
         for trial in range(self.settings.trials):
             for _ in range(1 if trial else max(self.settings.rounds, len(runs.drives))):

@@ -7,7 +7,6 @@ import pickle
 import tempfile
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
-from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -15,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from tyrefem.compare.interface import Computed, arrays_of, computed_from, computed_of
+from tyrefem.compare.packed_drive import PackedDrive, Work, same_tyre, solve_cycles
 from tyrefem.errors import InputError
 from tyrefem.estimates import work as estimate
 from tyrefem.inputs.study import StudyData
@@ -25,9 +25,7 @@ from tyrefem.output import versions
 from tyrefem.reduced.training import Snapshots, snapshots
 from tyrefem.simulation.estimate import WORTH_TELLING, RunEstimate
 from tyrefem.simulation.result import ResultData
-from tyrefem.simulation.rolling_tyre import RollingTyre
 from tyrefem.simulation.run import run
-from tyrefem.simulation.simulate import simulate
 from tyrefem.variants.answer_store import AnswerStore, digest, effects_source, plain
 from tyrefem.variants.task import Bundle, bundle, unpacked
 
@@ -37,70 +35,6 @@ Key = tuple[str, str | None]
 FIELDS = 30
 #: Names under which runs are kept: full runs with training data, full runs, and reduced runs.
 TRAINING, FULL, REDUCED = "taught", "full", "reduced"
-
-
-@dataclass(frozen=True, eq=False)
-class PackedDrive:
-    """An unchanged drive for any process; its changed runs share its mesh, operators and strain cycles.
-
-    Parameters
-    ----------
-    packed : the study. first : the drive whose mesh all drives share; None: this drive. cycles : file with strain
-        cycles that are costly to solve; if it cannot be read they are solved again.
-    """
-
-    packed: Bundle
-    first: PackedDrive | None = None
-    cycles: str = ""
-
-    @property
-    def tyre(self) -> RollingTyre:
-        """The tyre of the drive, made once in a process."""
-        if self.name not in _TYRES:
-            like = None if self.first is None else self.first.tyre
-            study = unpacked(self.packed)
-            _TYRES[self.name] = RollingTyre(
-                study if like is None else study.replace({}, like.study), like, self._read()
-            )
-        return _TYRES[self.name]
-
-    @property
-    def name(self) -> str:
-        """Unique name of the drive in a process."""
-        return self.packed.digest + self.cycles
-
-    def _read(self) -> CycleSchedule | None:
-        # The file is written by the main process, see `Runs.begin`.
-        with suppress(OSError):
-            cycles: CycleSchedule | None = pickle.loads(Path(self.cycles).read_bytes()) if self.cycles else None
-            return cycles
-        return None
-
-
-#: Tyres of drives in this process.
-_TYRES: dict[str, RollingTyre] = {}
-
-
-@dataclass(frozen=True, eq=False)
-class Work:
-    """A run: a drive with ``changes`` of its study by dotted names; empty: unchanged."""
-
-    drive: PackedDrive
-    changes: Mapping[str, Any] = field(default_factory=dict)
-
-    @property
-    def tyre(self) -> RollingTyre:
-        """The tyre; it shares mesh, operators and, if unchanged, strain cycles with the tyre of its drive."""
-        base = self.drive.tyre
-        if not self.changes:
-            return base
-        study = base.study.replace(self.changes, base.study)
-        return RollingTyre(study, base, base.cycles if same_cycles(study, base.study) else None)
-
-    def result(self) -> ResultData:
-        """The simulated run."""
-        tyre = self.tyre
-        return simulate(tyre) if tyre.study.card.mechanics.feedback is None else run(tyre.study)
 
 
 def _computed(result: ResultData) -> Computed:
@@ -159,11 +93,13 @@ class Runs:
     def __enter__(self) -> Runs:
         self._folder = tempfile.TemporaryDirectory(prefix="tyrefem-")
         self._drives: dict[str, PackedDrive] = {}
+        self._cycles_of: set[Key] = set()
+        self._shown = 0
         return self
 
     def __exit__(self, *_: object) -> None:
         for drive in self._drives.values():
-            _TYRES.pop(drive.name, None)
+            drive.forget()
         self._folder.cleanup()
 
     @property
@@ -245,14 +181,38 @@ class Runs:
         for drive, (computed, sample, cycles[drive]) in zip(left, answers, strict=True):
             self._add((drive, None), computed, sample)
             self._keep(FULL, (drive, None), arrays_of(computed))
-            self.done(len(self.computed))
+            self._show()
         first: PackedDrive | None = None
+        #: Drive -> load cases, and the first drive of the same tyre; only drives with costly cycles.
+        self._cases = {drive: repr(cycles[drive].cases) for drive in self.drives if cycles[drive] is not None}
+        self._tyre_of: dict[str, str] = {}
         for number, drive in enumerate(self.drives):
             path = Path(self._folder.name) / f"{number}.pickle"
             if cycles[drive] is not None:
                 path.write_bytes(pickle.dumps(cycles.pop(drive)))
-            self._drives[drive] = PackedDrive(packed[drive], first, str(path) if path.exists() else "")
+            changed = self._changed_folder(drive) if drive in self._cases else ""
+            self._drives[drive] = PackedDrive(packed[drive], first, str(path) if path.exists() else "", changed)
             first = first or self._drives[drive]
+
+    def _changed_folder(self, drive: str) -> str:
+        """The folder of changed strain cycles: that of the first drive of the same tyre."""
+        study = self.studies[drive, None]
+        alike = (other for other in self._tyre_of if same_tyre(study, self.studies[other, None]))
+        first = self._tyre_of[drive] = next(alike, drive)
+        folder = Path(self._folder.name) / f"changed-{self.drives.index(first)}"
+        folder.mkdir(exist_ok=True)
+        return str(folder)
+
+    def solve_cycles(self, keys: Iterable[Key]) -> None:
+        """Solve the changed strain cycles of runs, each once: drives with the same load cases share them."""
+        left: dict[tuple[str, str | None, str], Key] = {}
+        for drive, name in keys:
+            if drive in self._cases and not same_cycles(self.studies[drive, name], self.studies[drive, None]):
+                left.setdefault((self._tyre_of[drive], name, self._cases[drive]), (drive, name))
+        wanted = [key for key in left.values() if key not in self._cycles_of]
+        for key, _ in zip(wanted, self.each(solve_cycles, map(self.work, wanted)), strict=True):
+            self._cycles_of.add(key)
+            self._show()
 
     def run_for_training(self, keys: Sequence[Key]) -> None:
         """Full runs whose fields are training data too."""
@@ -267,7 +227,7 @@ class Runs:
         for key, (computed, sample) in zip(left, answers, strict=True):
             self._add(key, computed, sample)
             self._keep(TRAINING, key, (*arrays_of(computed), sample.fields, sample.sources))
-            self.done(len(self.computed))
+            self._show()
 
     def fill(self) -> None:
         """Full runs of all inputs that have no run yet."""
@@ -275,18 +235,19 @@ class Runs:
         # Drives with the same change follow each other, because they can share costly intermediate results.
         order = {name: number for number, name in enumerate(self.keys)}
         left = sorted((key for key in self.changed if key not in self.computed), key=lambda key: order[str(key[1])])
+        self.solve_cycles(left)
         answers = self._answers(full_run, [self.work(key) for key in left], left)
         for key, computed in zip(left, answers, strict=True):
             self._record(key, computed)
             self._keep(FULL, key, arrays_of(computed))
-            self.done(len(self.computed))
+            self._show()
 
     def take(self, reduced: Mapping[Key, Computed]) -> None:
         """Take the runs of a certified reduced model."""
         for key, computed in reduced.items():
             self._record(key, computed)
             self._keep(REDUCED, key, arrays_of(computed))
-        self.done(len(self.computed))
+        self._show()
 
     def resume_all(self, *, reduced: bool) -> bool:
         """Resume all runs from the store, with ``reduced`` also reduced runs; False, and none, if a run is missing."""
@@ -313,7 +274,7 @@ class Runs:
                 arrays = None if key in self.computed else self._kept(name, key)
                 if arrays is not None:
                     self._record(key, computed_from(arrays[:5], None))
-        self.done(len(self.computed))
+        self._show()
 
     def _answers(self, function: Callable[[Any], Any], work: Sequence[Any], keys: Sequence[Key]) -> Iterator[Any]:
         """Results of the function for these runs; errors name the study's file."""
@@ -323,6 +284,12 @@ class Runs:
                 yield next(answers)
             except InputError as error:
                 raise error if error.file else error.within(file=self.studies[key].file) from None
+
+    def _show(self) -> None:
+        """Tell how many runs are finished; a solved strain cycle counts as its run until this is finished."""
+        pending = len(self._cycles_of - self.computed.keys())
+        self._shown = max(self._shown, len(self.computed) + pending)
+        self.done(self._shown)
 
     def _record(self, key: Key, computed: Computed) -> None:
         self.computed[key] = replace(computed, study=self.studies[key])

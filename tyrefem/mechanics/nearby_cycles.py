@@ -96,15 +96,17 @@ class NearbyCycles:
     Parameters
     ----------
     study : with a strain law by finite elements. solved : studies that differ in their drives may share it.
+    known : the study's schedule; None: it is solved.
     """
 
     study: StudyData
     solved: SolvedCycles = field(default_factory=SolvedCycles)
+    known: CycleSchedule | None = None
 
     @functools.cached_property
     def schedule(self) -> CycleSchedule:
         """The study's schedule."""
-        return cycle_schedule(self.study)
+        return cycle_schedule(self.study) if self.known is None else self.known
 
     @functools.cached_property
     def numbers(self) -> tuple[UncertainNumber, ...]:
