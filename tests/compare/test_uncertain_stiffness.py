@@ -50,9 +50,9 @@ def test_each_changed_stiffness_costs_one_solution_and_the_rest_none(
     solved: list[Any] = []
     inflate = inflation.inflate
 
-    def counted(*given: Any) -> Any:
+    def counted(*given: Any, **options: Any) -> Any:
         solved.append(given)
-        return inflate(*given)
+        return inflate(*given, **options)
 
     monkeypatch.setattr(inflation, "inflate", counted)
     comparison = study.compare(table)

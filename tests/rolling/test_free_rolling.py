@@ -105,7 +105,7 @@ def test_strains_lag_and_their_loss_is_that_of_the_stiffness() -> None:
     lagging = tyre.at_deflection(DEFLECTION, 36)
     today = Pressing(tyre.state).at_deflection(DEFLECTION, 36)
     travel = lagging.rolling_radius
-    names = ("pressing", "grid", "deflection", "load", "stiffness", "forces", "direction", "displacement", "gaps")
+    names = ("pressing", "grid", "deflection", "load", "known_stiffness", "forces", "direction", "displacement", "gaps")
     footprint = LaggingFootprint(**{name: getattr(today, name) for name in names}, rolling=lagging, travel=travel)
     cycle = LaggingStrains(footprint)
     law = {region: lambda f, _: np.asarray(0.25 * (f / 10.0) ** 0.1) for region in tyre.state.mesh.subdomains}

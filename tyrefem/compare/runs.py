@@ -136,7 +136,7 @@ class Runs:
             return []
         return [
             f"Note: {len(self.changed)} runs with a changed input; {self._changed_cycles} of them change the strain "
-            "cycle, which needs a new finite-element solution"
+            "cycle, which is solved from that of the drive"
         ]
 
     @property

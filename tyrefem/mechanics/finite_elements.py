@@ -282,6 +282,8 @@ def _standing_provider(study: StudyData) -> Callable[..., FiniteElements]:
 
     def cycle(case: LoadCase, near: FiniteElements | None = None) -> FiniteElements:
         loaded, start = tyre.under(case), None if near is None else near.footprint
+        if near is not None:
+            loaded.inflated(case.pressure, near.tyre)
         footprint = loaded.footprint(case, large=mechanics.motion == "large", near=start)
         laws = strain_laws(loaded.study.materials)
         return FiniteElements(loaded.inflated(case.pressure), footprint, case, factor, one_cycle, laws)

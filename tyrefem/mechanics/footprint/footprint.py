@@ -31,7 +31,7 @@ class Footprint(Brief):
     pressing : the inflated tyre and its road. grid : angles and tread nodes of possible contact.
     deflection : penetration of the free tyre into the road, m.
     load : force along the road's normal, N, of the whole tyre.
-    stiffness : d load / d deflection at this deflection, N/m.
+    known_stiffness : `stiffness`, N/m; None: it is computed when it is used.
     forces : (k,) contact force at each point (angle, node) of the grid, both sides of the wheel together, N.
     direction : (c, k) unit vectors into the road.
     displacement : (c, k) displacement of the tread, m.
@@ -40,19 +40,22 @@ class Footprint(Brief):
     gaps : (k,) between tread and road, m.
     error : largest relative change of load, deflection, work and a fifth of the area against fewer harmonics; nan if
         they were not compared.
+    rate : in large motion, change of ``balanced``, ``forces`` and ``load`` per metre of further deflection, to a few
+        per cent; None: not computed.
     """
 
     pressing: TyreOnRoad
     grid: ContactGrid
     deflection: float
     load: float
-    stiffness: float
+    known_stiffness: float | None
     forces: Array
     direction: Array
     displacement: Array
     gaps: Array
     error: float = float("nan")
     balanced: Array | None = None
+    rate: tuple[Array, Array, float] | None = None
 
     def _facts(self) -> Mapping[str, Any]:
         error = "" if np.isnan(self.error) else f", {100 * self.error:.2g} % from fewer"
@@ -71,6 +74,19 @@ class Footprint(Brief):
     def motion(self) -> str:
         """``"large"``, or ``"linear"`` about the inflated tyre."""
         return "linear" if self.balanced is None else "large"
+
+    @functools.cached_property
+    def stiffness(self) -> float:
+        """d load / d deflection at this deflection, N/m."""
+        if self.known_stiffness is not None:
+            return self.known_stiffness
+        from tyrefem.mechanics.footprint.contact import Pressing
+        from tyrefem.mechanics.footprint.large_motion import DeflectedState, LargeMotion
+
+        assert self.balanced is not None
+        assert isinstance(self.pressing, Pressing)
+        moment = DeflectedState(self.deflection, self.balanced, self.grid, self.forces, self.load, self.rate)
+        return LargeMotion(self.pressing).stiffness(moment)
 
     @property
     def harmonics(self) -> int:

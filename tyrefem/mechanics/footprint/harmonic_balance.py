@@ -116,7 +116,7 @@ class Balance:
             moment = balanced
             passed[-1] = self.motion.footprint(moment)
         footprint = passed[-1].compared(passed[-2]) if len(passed) > 1 else passed[-1]
-        return replace(footprint, stiffness=self.motion.stiffness(moment, min(STIFFNESS, 5 * self.tolerance)))
+        return replace(footprint, known_stiffness=self.motion.stiffness(moment, min(STIFFNESS, 5 * self.tolerance)))
 
     def _contact(self, harmonics: int) -> int:
         """Highest harmonic of the contact for one of the motion."""

@@ -84,11 +84,13 @@ class LargeMotion:
     pressing : the tyre and its road.
     law : stress; by default that of the state.
     before_rim : largest deflection over that at which the crown meets the rim.
+    leading : the small motions that lead the search, of a tyre with the same mesh; None: those of this tyre.
     """
 
     pressing: Pressing
     law: FiniteLaw | None = None
     before_rim: float = BEFORE_RIM
+    leading: TautTyre | None = None
     _forces: dict[int, NonlinearForces] = field(default_factory=dict, init=False, repr=False)
     _folding: FoldingElements = field(default_factory=FoldingElements, init=False, repr=False)
     _touching: list[Touching] = field(default_factory=list, init=False, repr=False)
@@ -96,7 +98,7 @@ class LargeMotion:
     @functools.cached_property
     def factors(self) -> TautTyre:
         """The tyre in small motions that leads the search."""
-        return TautTyre(self.pressing)
+        return self.leading or TautTyre(self.pressing)
 
     @property
     def _sides(self) -> float:
@@ -288,11 +290,11 @@ class LargeMotion:
         return newton_step(touching, closed, tangent, -normal_components, SearchEnd(settled=accuracy), rotations, start)
 
     def footprint(self, moment: DeflectedState) -> Footprint:
-        """The footprint of a balance, without its `stiffness`."""
+        """The footprint of a balance; its stiffness is not known yet."""
         gaps, _, touching, displacements = self._road(moment)
         return Footprint(
-            self.pressing, moment.grid, moment.deflection, moment.load, 0.0, moment.forces, touching.direction,
-            displacements, gaps, balanced=moment.motion,
+            self.pressing, moment.grid, moment.deflection, moment.load, None, moment.forces, touching.direction,
+            displacements, gaps, balanced=moment.motion, rate=moment.rate,
         )  # fmt: skip
 
     def stiffness(self, moment: DeflectedState, accuracy: float = STIFFNESS) -> float:

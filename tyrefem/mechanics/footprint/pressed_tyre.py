@@ -97,8 +97,8 @@ class PressedTyre:
 
     study: StudyData
 
-    def inflated(self, pressure: float) -> Inflation:
-        """The tyre under a gauge pressure, Pa.
+    def inflated(self, pressure: float, near: Inflation | None = None) -> Inflation:
+        """The tyre under a gauge pressure, Pa; ``near``: a nearby inflated tyre to start from.
 
         Raises
         ------
@@ -106,7 +106,11 @@ class PressedTyre:
         """
         if pressure <= 0:
             raise InputError("the strain laws 'fem' and 'barrel' need an inflated tyre", field="pressure")
-        return self._inflated(pressure)
+        from tyrefem.mechanics.solid.inflation import inflate
+
+        return self._inflated.get(
+            pressure, lambda: inflate(self.study, pressure, mechanical_mesh(self.study), near=near)
+        )
 
     def footprint(self, case: LoadCase, *, large: bool, near: Footprint | None = None) -> Footprint | None:
         """The tyre on the road of a load case, at its load or its deflection; None: the load is zero.
@@ -159,14 +163,8 @@ class PressedTyre:
         return softened
 
     @functools.cached_property
-    def _inflated(self) -> Callable[[float], Inflation]:
-        from tyrefem.mechanics.solid.inflation import inflate
-
-        @functools.lru_cache(REMEMBERED)
-        def inflated(pressure: float) -> Inflation:
-            return inflate(self.study, pressure, mechanical_mesh(self.study))
-
-        return inflated
+    def _inflated(self) -> Cache[Inflation]:
+        return Cache(REMEMBERED)
 
     @functools.cached_property
     def _pressing(self) -> Callable[[float, float], Pressing]:

@@ -158,6 +158,7 @@ def inflate(
     choice: NewtonChoice | None = None,
     temperature: Any = None,
     angular_speed: float = 0.0,
+    near: Inflation | None = None,
 ) -> Inflation:
     """Inflate a study's tyre, and let it spin.
 
@@ -168,6 +169,7 @@ def inflate(
     mesh : a mesh of the study's section in quadrilaterals; by default that of the study.
     temperature : degC, as for `tyrefem.mechanics.solid.thermal.warm`; by default without thermal expansion.
     angular_speed : W, rad/s; the centrifugal load is W^2 times mass times radius.
+    near : a nearby inflated tyre on the same mesh to start from; the result is the same to the search's tolerance.
 
     Raises
     ------
@@ -190,7 +192,8 @@ def inflate(
     spin = Centrifugal(body.rings, reference_density(study, body), angular_speed) if angular_speed else None
     try:
         if temperature is None:
-            still = equilibrium(body, pressure, choice)
+            start = None if near is None else near.equilibrium.displacement
+            still = equilibrium(body, pressure, choice, start)
             spinning = replace(body, centrifugal=spin)
             return Inflation(spinning, spun_equilibrium(spinning, still, choice), study.section.half)
         from tyrefem.mechanics.solid import thermal

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -57,8 +58,13 @@ class _StuckError(Exception):
     """A load step that did not converge; the message gives the place of the largest error."""
 
 
-def equilibrium(body: Body, pressure: float, choice: NewtonChoice | None = None) -> Equilibrium:
+def equilibrium(
+    body: Body, pressure: float, choice: NewtonChoice | None = None, near: Array | None = None
+) -> Equilibrium:
     """The equilibrium of a body under a pressure, reached in steps from the undeformed state.
+
+    ``near``: (2, n_nodes) displacement, m, of a nearby equilibrium, from which the search starts; without convergence
+    there, the steps follow.
 
     Raises
     ------
@@ -67,6 +73,10 @@ def equilibrium(body: Body, pressure: float, choice: NewtonChoice | None = None)
     choice = choice or NewtonChoice()
     if not np.isfinite(pressure):
         raise InputError(f"the pressure must be a finite number, not {pressure:g} Pa", field="pressure")
+    if near is not None and pressure and near.shape == (2, body.rings.n_nodes):
+        with suppress(_StuckError):
+            displacement, history = _newton(body, near, pressure, choice)
+            return Equilibrium(displacement, pressure, (1.0,), (history,))
     before = now = np.zeros((2, body.rings.n_nodes))
     reached, last, step = 0.0, 0.0, choice.first_step
     easy = True
