@@ -33,6 +33,8 @@ from tyrefem.variants.task import Bundle, bundle, unpacked
 Key = tuple[str, str | None]
 #: Number of fields of a full run for training.
 FIELDS = 30
+#: Time of a footprint that starts from a nearby one, over that from the free tyre.
+NEARBY = 0.35
 #: Names under which runs are kept: full runs with training data, full runs, and reduced runs.
 TRAINING, FULL, REDUCED = "taught", "full", "reduced"
 
@@ -150,7 +152,7 @@ class Runs:
     @property
     def _cycles_time(self) -> str:
         """Time of strain cycles in large motion; empty if it is short."""
-        count = len(self.drives) + self._changed_cycles
+        count = len(self.drives) + NEARBY * self._changed_cycles
         run = RunEstimate.of(self.studies[self.drives[0], None])
         time = count * run.mechanics.time
         if time < WORTH_TELLING or run.study.card.mechanics.motion == "linear":
@@ -184,7 +186,7 @@ class Runs:
             self._show()
         first: PackedDrive | None = None
         #: Drive -> load cases, and the first drive of the same tyre; only drives with costly cycles.
-        self._cases = {drive: repr(cycles[drive].cases) for drive in self.drives if cycles[drive] is not None}
+        self._cases = {drive: repr(known.cases) for drive, known in cycles.items() if known is not None}
         self._tyre_of: dict[str, str] = {}
         for number, drive in enumerate(self.drives):
             path = Path(self._folder.name) / f"{number}.pickle"

@@ -49,9 +49,9 @@ def nearby_balance(
     if wanted is not None and not solved / FAR <= wanted <= FAR * solved:
         return None
     unmoved = wanted is None or abs(wanted - solved) <= balance.tolerance * solved
-    if unmoved and balance.law is None and near.pressing.road == pressing.road:
-        if _as_stiff(near.pressing.state, pressing.state):
-            return replace(near, pressing=pressing)
+    alike = balance.law is None and near.pressing.road == pressing.road
+    if unmoved and alike and _as_stiff(near.pressing.state, pressing.state):
+        return replace(near, pressing=pressing)
     motion = LargeMotion(pressing, balance.law, balance.before_rim, _leading(near))
     moment = DeflectedState(near.deflection, near.balanced, near.grid, near.forces, near.load, near.rate)
     moment = motion.refined(moment, moment.harmonics, near.harmonics)
