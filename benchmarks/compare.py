@@ -90,11 +90,10 @@ def main() -> None:
     print(f"{'all of them from the free tyre':44} {before:8.1f} s")
     print(f"{'comparison':44} {seconds:8.1f} s  {before / seconds:.1f} times faster, {seconds / each:.1f} runs")
     print(f"changes of means by {len(alone)} stiffness: off by {worst:.3g} K at most, of {largest:.3g} K")
-    print(json.dumps({
-        "study": options.study, "drives": len(drives), "inputs": len(raised), "changed_cycles": len(stiff) * len(drives),
-        "run_s": sum(as_driven) / len(drives), "changed_run_s": each, "from_free_tyre_s": before, "comparison_s": seconds,
-        "ratio": before / seconds, "difference_K": worst, "change_K": largest,
-    }))  # fmt: skip
+    numbers = {"run_s": sum(as_driven) / len(drives), "changed_run_s": each, "from_free_tyre_s": before}
+    numbers |= {"comparison_s": seconds, "ratio": before / seconds, "difference_K": worst, "change_K": largest}
+    cases = {"drives": len(drives), "inputs": len(raised), "changed_cycles": len(stiff) * len(drives)}
+    print(json.dumps({"study": options.study, **cases, **numbers}))
 
 
 if __name__ == "__main__":

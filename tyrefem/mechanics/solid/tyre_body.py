@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.cache import Cache, fingerprint
 from tyrefem.errors import InputError
 from tyrefem.estimates import work as estimate
 from tyrefem.geometry.meshing.expected import QUADRATIC
@@ -32,6 +33,9 @@ LOSS_TEMPERATURE = 60.0
 BUCKLING = 0.5
 #: Range of crown angles, deg, in which the cords' stiffness can be computed from the ply shear modulus.
 BIAS_ANGLES = (10.0, 80.0)
+
+#: Directions and stations of the Gauss points of a region.
+_PLACES: Cache[tuple[Array, Array]] = Cache(size=32)
 
 
 def tyre_body(study: StudyData, mesh: TyreMesh | None = None) -> Body:
@@ -178,8 +182,13 @@ class _Reader:
         """Gauss points (2, n, q), unit vectors along the meridian and stations |s| of a region."""
         points = self.rings.points[:, self.mesh.mesh.subdomains[region]]
         flat = points.reshape(2, -1)
-        s, _ = self.study.section.locate(flat.T)
-        return points, self.mesh.along_meridian(flat).reshape(points.shape), np.abs(s).reshape(points.shape[1:])
+
+        def placed() -> tuple[Array, Array]:
+            s, _ = self.study.section.locate(flat.T)
+            return self.mesh.along_meridian(flat).reshape(points.shape), np.abs(s).reshape(points.shape[1:])
+
+        # Tyres that differ in their materials have the same places.
+        return points, *_PLACES.get((self.study.section, self.mesh.section, fingerprint(flat)), placed)
 
     def _thickness(self, region: str, s: Array) -> Array:
         section = self.study.section
