@@ -31,7 +31,7 @@ ALLOWED = {
     "variants/task.py: _folders = []": "the temporary folder of this process, one",
     "diagnose/forward/evaluations.py: _MODEL = {}": "the latest forward model of a worker process, one",
     "diagnose/blind/rates.py: _TEST = []": "the blind test of a worker process, given when it starts",
-    "compare/runs.py: _TYRES = {}": "the drives of a comparison, taken out when it ends",
+    "compare/packed_drive.py: _TYRES = {}": "the drives of a comparison, taken out when it ends",
     "cards/__init__.py: cache(_plausible)": "one value for every class of card",
     "cards/__init__.py: cache(_allowed)": "one value for every class of card",
     "cards/__init__.py: cache(_units)": "one value for every class of card",

@@ -31,7 +31,7 @@ class Footprint(Brief):
     pressing : the inflated tyre and its road. grid : angles and tread nodes of possible contact.
     deflection : penetration of the free tyre into the road, m.
     load : force along the road's normal, N, of the whole tyre.
-    known_stiffness : `stiffness`, N/m; None: it is computed when it is used.
+    known_stiffness : `stiffness`, N/m.
     forces : (k,) contact force at each point (angle, node) of the grid, both sides of the wheel together, N.
     direction : (c, k) unit vectors into the road.
     displacement : (c, k) displacement of the tread, m.
@@ -48,7 +48,7 @@ class Footprint(Brief):
     grid: ContactGrid
     deflection: float
     load: float
-    known_stiffness: float | None
+    known_stiffness: float
     forces: Array
     direction: Array
     displacement: Array
@@ -75,18 +75,10 @@ class Footprint(Brief):
         """``"large"``, or ``"linear"`` about the inflated tyre."""
         return "linear" if self.balanced is None else "large"
 
-    @functools.cached_property
+    @property
     def stiffness(self) -> float:
         """d load / d deflection at this deflection, N/m."""
-        if self.known_stiffness is not None:
-            return self.known_stiffness
-        from tyrefem.mechanics.footprint.contact import Pressing
-        from tyrefem.mechanics.footprint.large_motion import DeflectedState, LargeMotion
-
-        assert self.balanced is not None
-        assert isinstance(self.pressing, Pressing)
-        moment = DeflectedState(self.deflection, self.balanced, self.grid, self.forces, self.load, self.rate)
-        return LargeMotion(self.pressing).stiffness(moment)
+        return self.known_stiffness
 
     @property
     def harmonics(self) -> int:

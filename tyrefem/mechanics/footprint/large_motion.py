@@ -290,10 +290,10 @@ class LargeMotion:
         return newton_step(touching, closed, tangent, -normal_components, SearchEnd(settled=accuracy), rotations, start)
 
     def footprint(self, moment: DeflectedState) -> Footprint:
-        """The footprint of a balance; its stiffness is not known yet."""
+        """The footprint of a balance, without its `stiffness`."""
         gaps, _, touching, displacements = self._road(moment)
         return Footprint(
-            self.pressing, moment.grid, moment.deflection, moment.load, None, moment.forces, touching.direction,
+            self.pressing, moment.grid, moment.deflection, moment.load, 0.0, moment.forces, touching.direction,
             displacements, gaps, balanced=moment.motion, rate=moment.rate,
         )  # fmt: skip
 

@@ -2,21 +2,43 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+import functools
+from dataclasses import dataclass, fields, replace
+from typing import Any
 
 import numpy as np
 
 from tyrefem.cache import Cache
+from tyrefem.mechanics.footprint.contact import Pressing
 from tyrefem.mechanics.footprint.footprint import Footprint
 from tyrefem.mechanics.footprint.harmonic_balance import ON_THE_WAY, Balance
 from tyrefem.mechanics.footprint.large_motion import DeflectedState, LargeMotion
 from tyrefem.mechanics.footprint.taut_tyre import TautTyre, tautened
 from tyrefem.mechanics.solid.body import Prestressed
+from tyrefem.mechanics.solid.finite_law import FiniteLaw
 
 #: Largest ratio of load or deflection to that of the start: its number of harmonics serves no further.
 FAR = 2.0
 #: Small motions of the latest footprint from which others started, by its tyre on the road.
 _LEADING: Cache[TautTyre] = Cache(size=1)
+
+
+@dataclass(frozen=True, eq=False)
+class NearbyFootprint(Footprint):
+    """A footprint that started from a nearby one. Its stiffness is computed when it is used: strain cycles do without.
+
+    ``law`` : stress, as in `Balance`.
+    """
+
+    law: FiniteLaw | None = None
+
+    @functools.cached_property
+    def stiffness(self) -> float:
+        """d load / d deflection at this deflection, N/m."""
+        assert self.balanced is not None
+        assert isinstance(self.pressing, Pressing)
+        moment = DeflectedState(self.deflection, self.balanced, self.grid, self.forces, self.load, self.rate)
+        return LargeMotion(self.pressing, self.law).stiffness(moment)
 
 
 def nearby_balance(
@@ -64,8 +86,11 @@ def nearby_balance(
         if reached is None or (carried is None and reached.deflection != target):
             return None
         moment, target = reached, reached.deflection
-    stiffness = None if balance.law is None else motion.stiffness(moment)
-    return replace(motion.footprint(moment), known_stiffness=stiffness, error=near.error)
+    return NearbyFootprint(**{**_fields(motion.footprint(moment)), "error": near.error, "law": balance.law})
+
+
+def _fields(footprint: Footprint) -> dict[str, Any]:
+    return {part.name: getattr(footprint, part.name) for part in fields(Footprint)}
 
 
 def _leading(near: Footprint) -> TautTyre:
