@@ -51,8 +51,8 @@ class ReducedInputSettings:
 DEFAULT = ReducedInputSettings()
 
 
-def reducible(studies: Mapping[Key, StudyData]) -> dict[Key, StudyData]:
-    """The runs for which a reduced model saves time.
+def reducible(studies: Mapping[Key, StudyData], *, nearby: bool = True) -> dict[Key, StudyData]:
+    """The runs for which a reduced model saves time; ``nearby``: also those with changed cycles by finite elements.
 
     With strain cycles by finite elements these are the runs with the strain cycle of their drive, and those whose
     cycles start from it: these need one solution each, training data none. Other changed cycles need a new solution in
@@ -64,7 +64,7 @@ def reducible(studies: Mapping[Key, StudyData]) -> dict[Key, StudyData]:
         if name is None
         or not strain_law(study).by_elements
         or same_cycles(study, studies[drive, None])
-        or nearby_cycles(study, studies[drive, None])
+        or (nearby and nearby_cycles(study, studies[drive, None]))
     }
 
 
@@ -129,11 +129,12 @@ class ReducedInputRuns:
     """Runs with one changed input, most of them by a reduced model.
 
     A changed run is the full run of its drive plus the difference of two reduced runs, with and without the change.
-    Errors that both reduced runs share cancel. ``runs``: after `Runs.begin`.
+    Errors that both reduced runs share cancel. ``runs``: after `Runs.begin`. ``nearby``: see `reducible`.
     """
 
     runs: Runs
     settings: ReducedInputSettings = DEFAULT
+    nearby: bool = True
     rounds: int = 0
     corrections: int = 0
 
@@ -144,7 +145,7 @@ class ReducedInputRuns:
         if study.card.mechanics.feedback is not None:
             raise NotReducibleError("strain cycles that follow the temperature")
         #: The runs for which the model is made.
-        self.studies = reducible(runs.studies)
+        self.studies = reducible(runs.studies, nearby=self.nearby)
         self.changed = [key for key in self.studies if key[1] is not None]
         if not enough_changed_runs(self.studies, self.settings):
             raise NotReducibleError(f"fewer than {self.settings.least_runs} runs with a changed input")

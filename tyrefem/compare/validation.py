@@ -240,15 +240,27 @@ def _by_runs(
         runs.begin()
         certificate, why = None, str(verdict) if refused else ""
         if model and not why:
-            try:
-                certificate = ReducedInputRuns(runs, work.settings).solve()
-                runs.keep_verdict(certificate.values)
-            except (InputError, np.linalg.LinAlgError) as error:
-                # An error of the study itself appears in its full run.
-                why = str(error)
-                runs.keep_verdict(why)
+            certificate, why = _certified(runs, work.settings)
+            runs.keep_verdict(why if certificate is None else certificate.values)
         runs.fill()
     return dict(runs.computed), certificate, [*runs.cost, *_model_notes(model, certificate, why)]
+
+
+def _certified(runs: Runs, settings: ReducedInputSettings) -> tuple[ReducedInputCertificate | None, str]:
+    """Compute runs by a reduced model, or the reason why there is none.
+
+    A model that does not hold for runs with changed strain cycles may hold for the others.
+    """
+    taught, why = list(runs.training), ""
+    attempts = [reducible(runs.studies, nearby=nearby) for nearby in (True, False)]
+    for nearby in (True, False) if len(attempts[0]) > len(attempts[1]) else (True,):
+        runs.training[:] = taught
+        try:
+            return ReducedInputRuns(runs, settings, nearby).solve(), ""
+        except (InputError, np.linalg.LinAlgError) as error:
+            # An error of the study itself appears in its full run.
+            why = str(error)
+    return None, why
 
 
 def _model_notes(model: bool, certificate: ReducedInputCertificate | None, why: str) -> list[str]:
