@@ -4,9 +4,12 @@
     python tools/run_docs_commands.py docs/sweeps.md README.md   # these
     python tools/run_docs_commands.py --longest 60               # ends a command after 60 s: "too long"
     python tools/run_docs_commands.py --list                     # what would be run, and why the rest is not
+    python tools/run_docs_commands.py --record docs/sweeps.md    # and writes how it ended to docs_record.csv
+    python tools/run_docs_commands.py --record --new              # only commands that have no row there
 
 Commands of a page run one after the other in the same folder, as a reader types them. What cannot be run, what is run
-shorter and what shall fail stands in `docs_commands.toml`, with the reason. Exit code 1: a command failed.
+shorter and what shall fail stands in `docs_commands.toml`, with the reason. Exit code 1: a command failed. Without
+``--new``, a page is run whole: a command may need what one before it made.
 """
 
 from __future__ import annotations
@@ -19,11 +22,12 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Container, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from docs_commands import ROOT, Exceptions, commands, pages
+from docs_record import Record, Row, commit_date
 
 #: Lines of the output that are shown of a command that failed.
 SHOWN = 8
@@ -86,8 +90,10 @@ def run(command: str, folder: Path, exports: Sequence[str], longest: float | Non
         return None, time.monotonic() - start, output
 
 
-def outcomes(page: Path, exceptions: Exceptions, longest: float | None = None) -> Iterator[Outcome]:
-    """Run a page's commands in a copy of the checkout."""
+def outcomes(
+    page: Path, exceptions: Exceptions, longest: float | None = None, known: Container[str] = ()
+) -> Iterator[Outcome]:
+    """Run a page's commands, but for those that are known, in a copy of the checkout."""
     name = page.relative_to(ROOT).as_posix()
     with tempfile.TemporaryDirectory(prefix="docs-") as place:
         folder = Path(place)
@@ -99,6 +105,8 @@ def outcomes(page: Path, exceptions: Exceptions, longest: float | None = None) -
                 yield Outcome(name, f"(before) {prepared}", code, seconds, "FAILED", output)
         for command in commands(page):
             reason = exceptions.why_left_out(command)
+            if exceptions.to_run(command) in known:
+                continue
             if reason is not None:
                 yield Outcome(name, f"{command}   [{reason}]", None, 0.0, "left out")
             elif command.startswith("export "):
@@ -117,8 +125,12 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("pages", nargs="*", help="pages, from here; default: all")
     parser.add_argument("--longest", type=float, help="s after which a command is ended")
     parser.add_argument("--list", action="store_true", help="run nothing: say what would be run")
+    parser.add_argument("--record", action="store_true", help="write how the commands ended to docs_record.csv")
+    parser.add_argument("--new", action="store_true", help="only commands that have no row in docs_record.csv")
     given = parser.parse_args(arguments)
     exceptions = Exceptions.read()
+    record = Record.read()
+    known = record.rows if given.new else {}
     chosen = [Path(page).resolve() for page in given.pages] or [page for page in pages() if commands(page)]
     done: list[Outcome] = []
     for page in chosen:
@@ -127,9 +139,15 @@ def main(arguments: list[str] | None = None) -> int:
                 reason = exceptions.why_left_out(command)
                 print(f"{page.relative_to(ROOT)}: {exceptions.to_run(command)}" + (f"   [{reason}]" if reason else ""))
             continue
-        for outcome in outcomes(page, exceptions, given.longest):
+        if all(exceptions.to_run(command) in known for command in commands(page)):
+            continue
+        for outcome in outcomes(page, exceptions, given.longest, known):
             done.append(outcome)
             print(outcome, flush=True)
+            if given.record and outcome.word != "left out":
+                row = Row(outcome.page, outcome.command, outcome.code, outcome.seconds, commit_date())
+                record.rows[outcome.command] = row
+                record.write(exceptions)
             if outcome.failed:
                 print("\n".join(f"    {line}" for line in outcome.output.splitlines()[-SHOWN:]), flush=True)
     if not given.list:

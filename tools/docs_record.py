@@ -1,0 +1,83 @@
+"""The record of the documentation's commands: which ended how, how long they took, and on what state of the code.
+
+`run_docs_commands.py --record` writes it to `docs_record.csv`. A command without a row, and not run by
+`tests/packaging/test_docs_commands.py` either, fails that test.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import subprocess
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from docs_commands import ROOT, Exceptions, commands, pages
+
+PATH = ROOT / "tools" / "docs_record.csv"
+COLUMNS = ("page", "command", "exit code", "seconds", "commit date")
+
+
+def chosen(exceptions: Exceptions) -> list[tuple[str, str]]:
+    """Page and command, as it is run, of every command that is not left out; in the order of the pages."""
+    return [
+        (page.relative_to(ROOT).as_posix(), exceptions.to_run(command))
+        for page in pages()
+        for command in commands(page)
+        if exceptions.why_left_out(command) is None and not command.startswith("export ")
+    ]
+
+
+def commit_date() -> str:
+    """The date of the commit that is checked out."""
+    git = ["git", "-C", str(ROOT), "log", "-1", "--format=%cs"]
+    return subprocess.run(git, capture_output=True, text=True, check=True).stdout.strip()
+
+
+@dataclass(frozen=True)
+class Row:
+    """A command that was run.
+
+    Parameters
+    ----------
+    page : the page among whose commands it was run. code : exit code; None: ended as too long. seconds : s.
+    date : of the commit that was checked out.
+    """
+
+    page: str
+    command: str
+    code: int | None
+    seconds: float
+    date: str
+
+
+@dataclass
+class Record:
+    """Rows by command. A command that stands on several pages has the row of the page that was run last."""
+
+    rows: dict[str, Row] = field(default_factory=dict)
+
+    @classmethod
+    def read(cls, path: Path = PATH) -> Record:
+        """The record of a file; an empty one, if there is none."""
+        if not path.exists():
+            return cls()
+        rows = [list(row.values()) for row in csv.DictReader(io.StringIO(path.read_text(encoding="utf-8")))]
+        return cls({
+            command: Row(page, command, int(code) if code else None, float(seconds), date)
+            for page, command, code, seconds, date in rows
+        })  # fmt: skip
+
+    def write(self, exceptions: Exceptions, path: Path = PATH) -> None:
+        """Write the rows of commands that the documentation still has, in the order of its pages."""
+        order = {command: index for index, (_, command) in enumerate(chosen(exceptions))}
+        text = io.StringIO()
+        table = csv.writer(text, lineterminator="\n")
+        table.writerow(COLUMNS)
+        for command in sorted(order.keys() & self.rows.keys(), key=order.__getitem__):
+            row = self.rows[command]
+            code = "" if row.code is None else row.code
+            table.writerow([row.page, command, code, f"{row.seconds:.1f}", row.date])
+        part = path.with_suffix(".part")
+        part.write_text(text.getvalue(), encoding="utf-8")
+        part.replace(path)
