@@ -1,10 +1,11 @@
 """Rolling with friction: closed forms, power balance, and the measured 205/60R15 over its loads.
 
     python benchmarks/rolling.py [--closed-forms] [--loss] [--measured] [--standing] [--large] [--belt-angle]
-        [--resistance] [--pictures]
+        [--resistance] [--pictures] [--quick]
 
 Writes docs/evidence/tables/rolling-closed-forms.csv, rolling-loss.csv, rolling-measured.csv,
 rolling-standing.csv, rolling-large.csv, rolling-belt-angle.csv and rolling-resistance-friction.csv. Nothing is fitted.
+With --quick, --measured and --large print the row at 4 kN and write nothing.
 """
 
 from __future__ import annotations
@@ -14,10 +15,11 @@ import csv
 import math
 import os
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
@@ -46,6 +48,8 @@ PICTURES = ROOT / "docs" / "pictures"
 STUDY = ROOT / "studies" / "measured-205-60r15" / "study.toml"
 MEASURED = STUDY.parent / "summary.csv"
 FRICTION = 0.3
+#: Load, N, of the quick rows.
+TYPICAL = 4000.0
 #: Drum diameter, m; camber and slip angle, deg; torque, N m; path curvature, 1/m, of the power balances.
 BALANCES = (
     (math.inf, 0, 1, 0, 0), (math.inf, 0, 3, 0, 0), (math.inf, 0, 8, 0, 0), (math.inf, 2, 2, 0, 0),
@@ -60,6 +64,18 @@ LARGE = ((1.0, 0.0), (3.0, 0.0), (0.0, -0.02), (0.0, -0.05))
 BELT_ANGLES, BELT_LOADS = (20, 23, 26), (2000.0, 4000.0, 6000.0)
 #: Straight ahead without torque; tan delta of the tyre with loss.
 STRAIGHT, TANGENT = (math.inf, 0, 0, 0, 0), 0.15
+
+
+def measured_rows(quick: bool) -> list[dict[str, str]]:
+    """The measured slopes of slip over load, or only those at the typical load."""
+    with MEASURED.open(encoding="utf-8") as stream:
+        rows = list(csv.DictReader(line for line in stream if not line.startswith("#")))
+    return [row for row in rows if not quick or float(row["load [N]"]) == TYPICAL]
+
+
+def table_of(name: str, quick: bool) -> IO[str]:
+    """The file of a table; nothing is kept of a quick run."""
+    return (Path(os.devnull) if quick else TABLES / name).open("w", encoding="utf-8", newline="")
 
 
 def rigid(count: int, slip: float, component: int) -> Any:
@@ -167,23 +183,21 @@ def closed_forms() -> None:
             print(f"{name:75} {computed:12.6g} {exact:12.6g} {deviation:+7.2f} %", flush=True)
 
 
-def measured() -> None:
+def measured(quick: bool) -> None:
     """Write cornering stiffness, slip stiffness and trail over load beside the measured ones."""
-    with MEASURED.open(encoding="utf-8") as stream:
-        lines = [line for line in stream if not line.startswith("#")]
-    rows = list(csv.DictReader(lines))
+    rows = measured_rows(quick)
     names = {
         "cornering_stiffness [kN/rad]": "cornering stiffness [kN/rad]",
         "longitudinal_slip_stiffness [kN]": "slip stiffness [kN]",
         "pneumatic_trail [mm]": "trail [mm]",
         "effective_rolling_radius [mm]": "rolling radius [mm]",
     }
-    with (TABLES / "rolling-measured.csv").open("w", encoding="utf-8", newline="") as stream:
+    with table_of("rolling-measured.csv", quick) as stream:
         table = csv.writer(stream, lineterminator="\n")
         table.writerow(["load [N]", "friction", "quantity", "measured", "computed", "deviation [%]", "harmonics"])
         for line in rows:
             load = float(line["load [N]"])
-            for friction in (1.0, 0.8, 1.2) if load == 4000 else (1.0,):
+            for friction in (1.0, 0.8, 1.2) if load == TYPICAL and not quick else (1.0,):
                 wheel = wheel_on_road(tf.study(STUDY), load=load, friction=friction)
                 rolled = settled(wheel, RollingMotion(math.radians(1.0)), {"torque": 0.0}, 0.05)
                 stiffness = slip_stiffness(wheel, rolled.state.harmonics)
@@ -233,13 +247,12 @@ def standing() -> None:
                 row(motion, f"of a push by {1e3 * push:g} mm", forward, left)
 
 
-def large() -> None:
+def large(quick: bool) -> None:
     """Write slopes and the balance of powers of rolling on the footprint in large motion, over load."""
-    with MEASURED.open(encoding="utf-8") as stream:
-        rows = list(csv.DictReader(line for line in stream if line[0] != "#"))
+    rows = measured_rows(quick)
     names = ("cornering_stiffness [kN/rad]", "longitudinal_slip_stiffness [kN]", "pneumatic_trail [mm]",
              "effective_rolling_radius [mm]")  # fmt: skip
-    with (TABLES / "rolling-large.csv").open("w", encoding="utf-8", newline="") as stream:
+    with table_of("rolling-large.csv", quick) as stream:
         table = csv.writer(stream, lineterminator="\n")
         balances = [f"balance at {angle:g} deg, slip {slip:g} [%]" for angle, slip in LARGE]
         table.writerow(
@@ -329,19 +342,20 @@ def pictures() -> None:
 def main() -> None:
     """Run the parts that are named, or the closed forms."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parts = {
+    parts: dict[str, Callable[[], None]] = {
         "closed-forms": closed_forms,
         "loss": loss,
-        "measured": measured,
         "standing": standing,
-        "large": large,
         "belt-angle": belt_angle,
         "resistance": resistance,
         "pictures": pictures,
     }
-    for name in parts:
+    by_load: dict[str, Callable[[bool], None]] = {"measured": measured, "large": large}
+    for name in (*parts, *by_load):
         parser.add_argument(f"--{name}", action="store_true")
+    parser.add_argument("--quick", action="store_true", help="of --measured and --large: a single load, no table")
     chosen = vars(parser.parse_args())
+    parts |= {name: partial(part, chosen["quick"]) for name, part in by_load.items()}
     named = [part for name, part in parts.items() if chosen[name.replace("-", "_")]]
     for part in named or [closed_forms]:
         part()

@@ -18,10 +18,10 @@ PATH = ROOT / "tools" / "docs_record.csv"
 COLUMNS = ("page", "command", "exit code", "seconds", "commit date")
 
 
-def chosen(exceptions: Exceptions) -> list[tuple[str, str]]:
-    """Page and command, as it is run, of every command that is not left out; in the order of the pages."""
+def to_be_run(exceptions: Exceptions) -> list[tuple[str, str, int]]:
+    """Page, command as it is run, and exit code that it shall have; of all commands that are not left out."""
     return [
-        (page.relative_to(ROOT).as_posix(), exceptions.to_run(command))
+        (page.relative_to(ROOT).as_posix(), exceptions.to_run(command), exceptions.code(command))
         for page in pages()
         for command in commands(page)
         if exceptions.why_left_out(command) is None and not command.startswith("export ")
@@ -70,7 +70,7 @@ class Record:
 
     def write(self, exceptions: Exceptions, path: Path = PATH) -> None:
         """Write the rows of commands that the documentation still has, in the order of its pages."""
-        order = {command: index for index, (_, command) in enumerate(chosen(exceptions))}
+        order = {command: index for index, (_, command, _) in reversed(list(enumerate(to_be_run(exceptions))))}
         text = io.StringIO()
         table = csv.writer(text, lineterminator="\n")
         table.writerow(COLUMNS)

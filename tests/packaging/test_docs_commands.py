@@ -1,7 +1,8 @@
-"""Every command in the documentation runs: as it stands where it is quick, else on a coarse mesh, or a test is named.
+"""Every command in the documentation runs: here, as it stands or on a coarse mesh, or it has a row in the record.
 
 `COARSE` says what is added to make a command short, `ELSEWHERE` which commands are not run here, and why.
-`tools/run_docs_commands.py` runs them all, page by page as they stand, but for those in `tools/docs_commands.toml`.
+`tools/run_docs_commands.py --record` runs them all, page by page as they stand, but for those in
+`tools/docs_commands.toml`, and writes `tools/docs_record.csv`.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from pathlib import Path
 
 import pytest
 from docs_commands import Exceptions, commands, lines, pages, plain, split
+from docs_record import Record, Row, to_be_run
 from run_docs_commands import Outcome, outcomes
 from test_docs_pages import ROOT, tyrefem_arguments
 
@@ -75,18 +77,16 @@ ELSEWHERE = {
 EXCEPTIONS = Exceptions.read()
 
 
-def every_command() -> Iterator[str]:
-    """Every command of the documentation; parts of a pipe one by one."""
-    for page in pages():
-        for command in commands(page):
-            for between, part in groupby(shlex.split(command), "|".__eq__):
-                words = list(part)
-                arguments = None if between else tyrefem_arguments(words)
-                if not between:
-                    yield shlex.join(words if arguments is None else ["tyrefem", *arguments])
+def parts(command: str) -> Iterator[str]:
+    """The parts of a pipe, as commands of ``tyrefem`` where they are some."""
+    for between, part in groupby(shlex.split(command), "|".__eq__):
+        words = list(part)
+        arguments = None if between else tyrefem_arguments(words)
+        if not between:
+            yield shlex.join(words if arguments is None else ["tyrefem", *arguments])
 
 
-COMMANDS = list(dict.fromkeys(every_command()))
+COMMANDS = list(dict.fromkeys(part for page in pages() for command in commands(page) for part in parts(command)))
 
 
 def why_elsewhere(command: str) -> str | None:
@@ -137,6 +137,34 @@ def test_every_reason_is_needed_and_names_what_there_is() -> None:
     patterns = [*ELSEWHERE, *EXCEPTIONS.patterns()]
     assert [pattern for pattern in patterns if not any(re.fullmatch(pattern, command) for command in every)] == []
     assert {name for name in EXCEPTIONS.before if not (ROOT / name).is_file()} == set()
+
+
+@pytest.mark.fast
+def test_every_command_that_does_not_run_here_has_been_run() -> None:
+    record = Record.read()
+    elsewhere = [
+        (page, command, code)
+        for page, command, code in to_be_run(EXCEPTIONS)
+        if any(why_elsewhere(part) for part in parts(command))
+    ]
+    assert len(elsewhere) > 80
+    missing = [f"python tools/run_docs_commands.py --record {page}   # for: {command}"
+               for page, command, _ in elsewhere if command not in record.rows]  # fmt: skip
+    assert missing == []
+    rows = [(record.rows[command], code) for _, command, code in elsewhere]
+    assert [row for row, code in rows if row.code != code] == []
+
+
+@pytest.mark.fast
+def test_the_record_gives_back_what_was_written(tmp_path: Path) -> None:
+    commands_run = [command for _, command, _ in to_be_run(EXCEPTIONS)]
+    first, last = commands_run[0], commands_run[-1]
+    record = Record({command: Row("README.md", command, code, 1.5, "2026-11-26")
+                     for command, code in ((last, None), ("tyrefem gone", 0), (first, 2))})  # fmt: skip
+    record.write(EXCEPTIONS, tmp_path / "record.csv")
+    again = Record.read(tmp_path / "record.csv")
+    # In the order of the pages, without what no page has.
+    assert list(again.rows.values()) == [record.rows[first], record.rows[last]]
 
 
 @pytest.mark.fast
