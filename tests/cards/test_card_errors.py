@@ -6,7 +6,7 @@ import copy
 
 import pytest
 
-from tyrefem import library
+from tyrefem import library, study
 from tyrefem.cards import merged, read_toml
 from tyrefem.errors import InputError
 from tyrefem.materials.card import MaterialCard, material
@@ -52,6 +52,12 @@ def test_a_bad_table_row_is_named(tread, table, message):
     tread["conductivity"] = {"table": table, "source": "test"}
     with pytest.raises(InputError, match=message):
         MaterialCard.check(tread)
+
+
+@pytest.mark.parametrize(("value", "shown"), [("sun", "'sun'"), ({"sun": {}}, "{'sun': {}}")])
+def test_a_value_in_place_of_a_list_is_refused(value, shown):
+    with pytest.raises(InputError, match=f"effects: must be a list in square brackets, not {shown}$"):
+        study("nasa-22x5.5-8pr", {"effects": value})
 
 
 def test_two_forms_of_one_property_are_refused(tread):

@@ -67,6 +67,14 @@ def test_a_failing_check_has_exit_code_2(write: Write, capfd: pytest.CaptureFixt
     assert (contracts["failed"], contracts["contracts"]) == (2, 4)
 
 
+def test_a_file_that_cannot_be_loaded_is_listed_once(write: Write, capfd: pytest.CaptureFixture[str]) -> None:
+    file = write("effect", ("class Lamp", "clas Lamp"))
+    assert main(["check", str(file)]) == 2
+    out, err = capfd.readouterr()
+    assert out.count("cannot be loaded") == 1
+    assert err == f"tyrefem: {file}: 1 of 1 contracts fail\n"
+
+
 def test_a_run_without_the_failing_plugin_works_with_one_line(
     write: Write, tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:

@@ -151,6 +151,8 @@ def _one_error(error: ValidationError, file: str | Path | None) -> InputError:
         message = "missing; this field is required"
     elif first["type"] == "string_type":
         message = f"must be text, not {first['input']!r:.60}"
+    elif first["type"] in ("tuple_type", "list_type"):
+        message = f"must be a list in square brackets, not {first['input']!r:.60}"
     elif first["type"] == "union_tag_invalid":
         tags = [tag.strip().strip("'") for tag in first["ctx"]["expected_tags"].split(",")]
         message = f"unknown law '{first['ctx']['tag']}'{nearest(str(first['ctx']['tag']), tags)}"

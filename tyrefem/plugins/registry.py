@@ -147,12 +147,16 @@ def _loaded(values: tuple[str, str, str], received: tuple[str, ...] | None) -> t
     modules: dict[str, LoadedModule] = {}
     failures: list[Failure] = []
     places = [*environment.places(values)] if received is None else [("", Path(file)) for file in received]
+    tried: set[Path] = set()  # a file may be named by itself and by its folder
     for variable, place in places:
         if not place.exists():
             words = f"{variable} names '{place}', which is not a folder"
             failures.append(Failure(Origin(file=place), words))
             continue
         for file in python_files(place):
+            if file in tried:
+                continue
+            tried.add(file)
             try:
                 module = load_file(file)
                 modules.setdefault(module.name, module)
