@@ -54,3 +54,13 @@ def test_the_command_writes_them_and_removes_them_again(tmp_path: Path) -> None:
     assert (tmp_path / "out/variants/1/nasa-22x5.5-8pr.pvd").is_file()
     assert main([*sweep, *changes]) == 0
     assert not (tmp_path / "out/variants").exists()
+
+
+def test_the_command_refuses_an_unknown_variant_before_any_run(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "out"
+    sweep = ["sweep", "nasa-22x5.5-8pr", "--vary", "drive.speed=10 mph,20 mph", "--out", str(out), "--vtk", "7"]
+    assert main(sweep) == 2
+    assert capfd.readouterr().err == "tyrefem: --vtk: no variant '7'; allowed: 1, 2, front\n"
+    assert not out.exists()

@@ -183,7 +183,7 @@ def sweep(
     from tyrefem.cli.sweep_flags import computed_design, questions, questions_of_flags
     from tyrefem.quantity import parse
     from tyrefem.reports.sweep_files import file_names, kept_names, save
-    from tyrefem.reports.sweep_variants import chosen_variants, write_variants
+    from tyrefem.reports.sweep_variants import chosen_variants, refuse_unknown, write_variants
     from tyrefem.variants.execution import Execution
 
     given = questions_of_flags(
@@ -197,6 +197,7 @@ def sweep(
     except InputError as error:
         raise error if error.field else error.within(field="--tolerance") from None
     name, wanted = questions(study, given, settings(changes), case)
+    refuse_unknown(wanted.plan, vtk or ())
     warn(wanted.study.warnings)
     place = out or Path("results") / f"{name}-sweep"
     with (

@@ -6,14 +6,29 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tyrefem.errors import InputError
+from tyrefem.errors import InputError, nearest
 from tyrefem.reports.vtk import file_name, write_series
 
 if TYPE_CHECKING:
     from tyrefem.sweep.design import DesignData
+    from tyrefem.variants.plan import Plan
 
 #: Folder of the variants' folders; word for all variants on the Pareto front.
 FOLDER, FRONT = "variants", "front"
+
+
+def refuse_unknown(plan: Plan, words: Iterable[str]) -> None:
+    """Refuse words that name no variant of a sample, before anything is computed.
+
+    Raises
+    ------
+    InputError : no sample; neither a variant of it nor `FRONT`.
+    """
+    for word in words:
+        if not len(plan.variants):
+            raise InputError("the sweep has no sample, so no variants by name", field="--vtk")
+        if word != FRONT and word not in plan.names:
+            raise InputError(f"no variant '{word}'{nearest(word, [FRONT, *plan.names])}", field="--vtk")
 
 
 def chosen_variants(design: DesignData, words: Iterable[str]) -> list[str]:
