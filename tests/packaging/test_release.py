@@ -17,7 +17,10 @@ pytestmark = pytest.mark.fast
 
 ROOT = Path(__file__).resolve().parents[2]
 CITATION = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
-PROJECT: dict[str, Any] = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+SETTINGS: dict[str, Any] = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+PROJECT: dict[str, Any] = SETTINGS["project"]
+#: Files of the repository that the source archive has without being named, or does without.
+NOT_NAMED = {"pyproject.toml", ".gitignore"}
 
 
 def of_citation(key: str) -> str:
@@ -74,3 +77,12 @@ def test_every_supported_python_is_named() -> None:
     named = {line.rpartition(":: ")[2] for line in PROJECT["classifiers"] if ":: Python :: 3." in line}
     assert named == {"3.11", "3.12", "3.13"}
     assert PROJECT["requires-python"] == ">=3.11"
+
+
+def test_the_source_archive_has_all_that_the_repository_has() -> None:
+    if shutil.which("git") is None or not (ROOT / ".git").exists():
+        pytest.skip("no git repository")
+    git = ["git", "ls-tree", "--name-only", "HEAD"]
+    tracked = subprocess.run(git, cwd=ROOT, capture_output=True, text=True, check=True, timeout=60).stdout.split()
+    included = SETTINGS["tool"]["hatch"]["build"]["targets"]["sdist"]["include"]
+    assert set(included) == set(tracked) - NOT_NAMED

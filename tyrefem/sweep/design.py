@@ -224,7 +224,7 @@ def run_design_study(study: StudyData, vary: Mapping[str, Any] | None = None, **
     InputError : an option is neither a key of a sweep file nor a field of `Execution`; errors of `questions`.
     """
     known = [each.name for each in fields(Execution)]
-    allowed = [*known, *SweepCard.model_fields, *sweep_questions()]
+    allowed = {*known, *SweepCard.model_fields, *sweep_questions()}
     for name in options:
         if name not in allowed:
             raise InputError(f"unknown option '{name}'{nearest(name, allowed)}", field="sweep")
