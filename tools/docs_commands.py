@@ -61,6 +61,17 @@ def plain(command: str) -> str:
     return " ".join(shlex.split(command))
 
 
+def without_place(command: str) -> str:
+    """The words of a command without the place of its results: commands that differ in it alone do the same.
+
+    >>> without_place('tyrefem  run a --out "b c" --quiet')
+    'tyrefem run a --quiet'
+    """
+    words = shlex.split(command)
+    place = words.index("--out") if "--out" in words else len(words)
+    return shlex.join([*words[:place], *words[place + 2 :]])
+
+
 @dataclass(frozen=True)
 class Exceptions:
     """The list of commands that are not run as they stand; patterns match the whole `plain` command.

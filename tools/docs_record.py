@@ -12,7 +12,7 @@ import subprocess
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from docs_commands import ROOT, Exceptions, commands, pages
+from docs_commands import ROOT, Exceptions, commands, pages, without_place
 
 PATH = ROOT / "tools" / "docs_record.csv"
 COLUMNS = ("page", "command", "exit code", "seconds", "commit date")
@@ -53,7 +53,7 @@ class Row:
 
 @dataclass
 class Record:
-    """Rows by command. A command that stands on several pages has the row of the page that was run last."""
+    """Rows by command without its place. What stands on several pages has the row of the page that was run last."""
 
     rows: dict[str, Row] = field(default_factory=dict)
 
@@ -63,21 +63,28 @@ class Record:
         if not path.exists():
             return cls()
         rows = [list(row.values()) for row in csv.DictReader(io.StringIO(path.read_text(encoding="utf-8")))]
-        return cls({
-            command: Row(page, command, int(code) if code else None, float(seconds), date)
-            for page, command, code, seconds, date in rows
-        })  # fmt: skip
+        record = cls()
+        for page, command, code, seconds, date in rows:
+            record.add(Row(page, command, int(code) if code else None, float(seconds), date))
+        return record
+
+    def add(self, row: Row) -> None:
+        """Add a row, or put it in the place of that of the same command."""
+        self.rows[without_place(row.command)] = row
+
+    def row(self, command: str) -> Row | None:
+        """The row of a command."""
+        return self.rows.get(without_place(command))
 
     def write(self, exceptions: Exceptions, path: Path = PATH) -> None:
         """Write the rows of commands that the documentation still has, in the order of its pages."""
-        order = {command: index for index, (_, command, _) in reversed(list(enumerate(to_be_run(exceptions))))}
+        documented = [without_place(command) for _, command, _ in to_be_run(exceptions)]
         text = io.StringIO()
         table = csv.writer(text, lineterminator="\n")
         table.writerow(COLUMNS)
-        for command in sorted(order.keys() & self.rows.keys(), key=order.__getitem__):
-            row = self.rows[command]
+        for row in [self.rows[key] for key in dict.fromkeys(documented) if key in self.rows]:
             code = "" if row.code is None else row.code
-            table.writerow([row.page, command, code, f"{row.seconds:.1f}", row.date])
+            table.writerow([row.page, row.command, code, f"{row.seconds:.1f}", row.date])
         part = path.with_suffix(".part")
         part.write_text(text.getvalue(), encoding="utf-8")
         part.replace(path)

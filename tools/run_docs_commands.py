@@ -26,7 +26,7 @@ from collections.abc import Container, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from docs_commands import ROOT, Exceptions, commands, pages
+from docs_commands import ROOT, Exceptions, commands, pages, without_place
 from docs_record import Record, Row, commit_date
 
 #: Lines of the output that are shown of a command that failed.
@@ -105,7 +105,7 @@ def outcomes(
                 yield Outcome(name, f"(before) {prepared}", code, seconds, "FAILED", output)
         for command in commands(page):
             reason = exceptions.why_left_out(command)
-            if exceptions.to_run(command) in known:
+            if without_place(exceptions.to_run(command)) in known:
                 continue
             if reason is not None:
                 yield Outcome(name, f"{command}   [{reason}]", None, 0.0, "left out")
@@ -139,14 +139,13 @@ def main(arguments: list[str] | None = None) -> int:
                 reason = exceptions.why_left_out(command)
                 print(f"{page.relative_to(ROOT)}: {exceptions.to_run(command)}" + (f"   [{reason}]" if reason else ""))
             continue
-        if all(exceptions.to_run(command) in known for command in commands(page)):
+        if all(without_place(exceptions.to_run(command)) in known for command in commands(page)):
             continue
         for outcome in outcomes(page, exceptions, given.longest, known):
             done.append(outcome)
             print(outcome, flush=True)
             if given.record and outcome.word != "left out":
-                row = Row(outcome.page, outcome.command, outcome.code, outcome.seconds, commit_date())
-                record.rows[outcome.command] = row
+                record.add(Row(outcome.page, outcome.command, outcome.code, outcome.seconds, commit_date()))
                 record.write(exceptions)
             if outcome.failed:
                 print("\n".join(f"    {line}" for line in outcome.output.splitlines()[-SHOWN:]), flush=True)
