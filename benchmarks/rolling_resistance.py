@@ -1,10 +1,11 @@
 """Rolling resistance of the measured 205/60R15, cold and warm, over load and pressure: nothing is fitted.
 
-    python benchmarks/rolling_resistance.py [--motion large|linear] [--picture]
+    python benchmarks/rolling_resistance.py [--motion large|linear] [--quick] [--picture]
 
 Each row is a run of studies/measured-205-60r15 with its temperatures: ``cold`` is the coefficient at the initial
 temperature, ``warm`` that at the end. With ``moduli`` "constant" the cards' strain dependence is left out. Writes
-docs/evidence/tables/measured-rolling.csv and prints the exponents over load and pressure.
+docs/evidence/tables/measured-rolling.csv and prints the exponents over load and pressure. With --quick only the row at
+4 kN is computed, and printed beside that of the table.
 """
 
 from __future__ import annotations
@@ -31,7 +32,8 @@ STUDY = ROOT / "studies" / "measured-205-60r15" / "study.toml"
 TABLE = ROOT / "docs" / "evidence" / "tables" / "measured-rolling.csv"
 PICTURE = ROOT / "docs" / "pictures" / "rolling-resistance.png"
 MEASURED = STUDY.parent / "summary.csv"
-#: Load, N, and pressure, kPa.
+#: Load, N, and pressure, kPa: of the quick row, and of all.
+TYPICAL = (4000, 220)
 CASES = ((2000, 220), (3000, 220), (4000, 220), (5000, 220), (6000, 220), (4000, 200), (4000, 240))
 
 
@@ -88,12 +90,35 @@ def picture() -> None:
         figure.savefig(path, dpi=130, format="png")
 
 
+def computed(moduli: str, load: float, pressure: float, motion: str) -> dict[str, Any]:
+    """The row of a load, N, and a pressure, kPa."""
+    changes = {"drive.load": f"{load} N", "drive.pressure": f"{pressure} kPa", "mechanics.motion": motion}
+    study = tf.study(STUDY, {**changes, "mechanics.moduli": "card" if moduli == "constant" else moduli})
+    return row(constant(study) if moduli == "constant" else study, moduli, load, pressure)
+
+
+def quick(motion: str) -> None:
+    """Print the row of the typical load and pressure beside that of the table."""
+    load, pressure = TYPICAL
+    with TABLE.open(encoding="utf-8") as file:
+        stored = next(
+            each for each in csv.DictReader(file)
+            if (each["moduli"], each["load [N]"], each["pressure [kPa]"]) == ("secant", str(load), str(pressure))
+        )  # fmt: skip
+    for key, value in computed("secant", load, pressure, motion).items():
+        print(f"{key:40s} {value:<12.5g} stored: {stored[key]}" if isinstance(value, float) else f"{key:40s} {value}")
+
+
 def main() -> None:
     """Compute all rows."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--motion", choices=("large", "linear"), default="large")
     parser.add_argument("--picture", action="store_true", help="only the picture, of the present table")
+    parser.add_argument("--quick", action="store_true", help="only the row at 4 kN and 220 kPa, printed")
     arguments = parser.parse_args()
+    if arguments.quick:
+        quick(arguments.motion)
+        return
     if arguments.picture:
         picture()
         return
@@ -101,9 +126,7 @@ def main() -> None:
     rows: list[dict[str, Any]] = []
     for moduli in ("secant", "constant"):
         for load, pressure in CASES:
-            changes = {"drive.load": f"{load} N", "drive.pressure": f"{pressure} kPa", "mechanics.motion": motion}
-            study = tf.study(STUDY, {**changes, "mechanics.moduli": "card" if moduli == "constant" else moduli})
-            rows.append(row(constant(study) if moduli == "constant" else study, moduli, load, pressure))
+            rows.append(computed(moduli, load, pressure, motion))
             print({key: f"{v:.5g}" if isinstance(v, float) else v for key, v in rows[-1].items()}, flush=True)
             with atomic_path(TABLE) as path, open(path, "w", encoding="utf-8", newline="") as file:
                 writer = csv.DictWriter(file, rows[0], lineterminator="\n")
