@@ -16,12 +16,12 @@ import argparse
 import json
 import os
 import time
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
 import tyrefem as tf
-from tyrefem.diagnose.blind.rates import run_blind
+from tyrefem.diagnose.blind.rates import run_blind, tag_of
 from tyrefem.output import atomic_path
 from tyrefem.reports.blind import save
 
@@ -40,14 +40,13 @@ def main() -> None:
     given = parser.parse_args()
     began = time.perf_counter()
     rows = {} if given.records is None else recorded(given.records)
+    study, options = tf.study(given.study), {"reduced": given.reduced, "truth": given.truth}
     try:
-        result = run_blind(
-            tf.study(given.study), given.cases, given.seed, given.out, given.workers, reduced=given.reduced,
-            truth=given.truth, finished=rows,
-        )  # fmt: skip
+        result = run_blind(study, given.cases, given.seed, given.out, given.workers, **options, finished=rows)
     finally:
         if given.records is not None:
-            record(given.records, rows, given.out / "cases")
+            tag = tag_of(study, given.cases, given.seed, **options)
+            record(given.records, rows, (given.out / "cases").glob(f"{tag}-*.json"))
     save(result, given.out)
     for line in result.words():
         print(line)
@@ -72,9 +71,9 @@ def recorded(path: Path) -> dict[int, dict[str, Any]]:
     return {row["number"]: row for row in rows}
 
 
-def record(path: Path, rows: Mapping[int, dict[str, Any]], cases: Path) -> None:
-    """Write known rows and those of the files in ``cases`` to a file of finished cases."""
-    new = [json.loads(each.read_text(encoding="utf-8")) for each in cases.glob("*.json")]
+def record(path: Path, rows: Mapping[int, dict[str, Any]], cases: Iterable[Path]) -> None:
+    """Write known rows and those of the files of cases to a file of finished cases."""
+    new = [json.loads(each.read_text(encoding="utf-8")) for each in cases]
     every = {**rows, **{row["number"]: row for row in new}}
     with atomic_path(path) as temporary:
         temporary.write_text("".join(json.dumps(every[number]) + "\n" for number in sorted(every)), encoding="utf-8")

@@ -10,7 +10,8 @@ from typing import Any
 import pytest
 from script_module import script_module
 
-from tyrefem.diagnose.blind.rates import Blind
+import tyrefem as tf
+from tyrefem.diagnose.blind.rates import Blind, tag_of
 
 ROOT = Path(__file__).resolve().parents[2]
 MODEL = {"strain_law": None, "strain_modes_rms": 0.25, "film_speed_exponents": {}}
@@ -40,7 +41,7 @@ def test_tables_picture_and_page_come_from_the_case_files(tmp_path: Path, monkey
     rows = module.finished(folder)
     assert [row["number"] for row in rows] == [0, 1]
     benchmark, records = script_module("benchmarks/blind.py"), tmp_path / "records.jsonl"
-    benchmark.record(records, {7: case(7), 1: case(1)}, folder)
+    benchmark.record(records, {7: case(7), 1: case(1)}, folder.glob("*.json"))
     assert [row["number"] for row in module.finished(records)] == [0, 1, 7]
     assert benchmark.recorded(records)[1] == wrong
     module.write(Blind("s", 7, rows, data_model="structural"))
@@ -54,6 +55,24 @@ def test_tables_picture_and_page_come_from_the_case_files(tmp_path: Path, monkey
     assert (failure["case"], failure["strain energy"], failure["named"]) == ("1", "barrel", "leak")
     assert failure["fault"] == "a hidden effect is not in the reported set; named, but not hidden: leak"
     assert (tmp_path / "blind-structural.png").stat().st_size > 10_000
+
+
+def test_cases_of_another_test_in_the_same_folder_are_not_recorded(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    benchmark, records = script_module("benchmarks/blind.py"), tmp_path / "records.jsonl"
+    finished = {number: case(number) for number in (0, 1)}
+    benchmark.record(records, finished, [])
+    out = tmp_path / "out"
+    (out / "cases").mkdir(parents=True)
+    options = {"reduced": "auto", "truth": "ordinary"}
+    tags = [tag_of(tf.study("hidden-effect"), 2, seed, **options) for seed in (3, 4)]
+    for tag, verdict in zip(tags, ("no gap", "unexplained"), strict=True):
+        (out / f"cases/{tag}-00001.json").write_text(json.dumps(case(1, verdict=verdict)), encoding="utf-8")
+    words = ["--cases", "2", "--seed", "3", "--out", str(out), "--records", str(records), "--workers", "1"]
+    monkeypatch.setattr("sys.argv", ["blind.py", *words])
+    benchmark.main()
+    assert benchmark.recorded(records) == {0: finished[0], 1: case(1, verdict="no gap")}
 
 
 def test_the_page_has_the_places_that_the_script_fills() -> None:

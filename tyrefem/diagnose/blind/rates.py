@@ -219,16 +219,11 @@ def run_blind(
     unknown = sorted(set(options) - set(BlindOptions.__annotations__))
     if unknown:
         raise TypeError(f"run_blind takes no keyword {unknown[0]!r}{nearest(unknown[0], BlindOptions.__annotations__)}")
-    data_model, reduced = checked_model(options.get("truth", ORDINARY)), options.get("reduced", "auto")
+    data_model, reduced, mesh = _chosen(options)
     NEEDS.check(study)
     candidates = candidates_of(study)
     drives = planned(study)
-    stated = options.get("mesh")
-    mesh = mesh_of(data_model) if stated is None else stated
-    decisive = [jsonable(dict(study.data)), count, seed, reduced, dict(mesh), tyrefem.__version__]
-    decisive += [] if data_model == ORDINARY else [data_model]
-    text = json.dumps(decisive, sort_keys=True, default=str)
-    tag = hashlib.sha256(text.encode()).hexdigest()[:12]
+    tag = tag_of(study, count, seed, **options)
     store = folder / "cases"
     store.mkdir(parents=True, exist_ok=True)
     rows: dict[int, Row] = dict(options.get("finished", {}))
@@ -264,6 +259,21 @@ def run_blind(
     used = plugin_summary(study, [candidate.name for candidate in candidates])["plugins"]
     rows_in_order = tuple(rows[number] for number in sorted(rows))
     return Blind(study.name, seed, rows_in_order, notes, mesh, data_model, tuple(used))
+
+
+def tag_of(study: StudyData, count: int, seed: int, **options: Unpack[BlindOptions]) -> str:
+    """Begin of the names of a test's files in ``folder``/cases: tests that differ share a folder, but no file."""
+    data_model, reduced, mesh = _chosen(options)
+    decisive = [jsonable(dict(study.data)), count, seed, reduced, dict(mesh), tyrefem.__version__]
+    decisive += [] if data_model == ORDINARY else [data_model]
+    text = json.dumps(decisive, sort_keys=True, default=str)
+    return hashlib.sha256(text.encode()).hexdigest()[:12]
+
+
+def _chosen(options: BlindOptions) -> tuple[str, str, Mapping[str, Any]]:
+    """Model of the data, use of reduced models, and mesh of the data, of options of which some are not given."""
+    data_model, stated = checked_model(options.get("truth", ORDINARY)), options.get("mesh")
+    return data_model, options.get("reduced", "auto"), mesh_of(data_model) if stated is None else stated
 
 
 def _answers(test: BlindTest, numbers: Sequence[int], workers: int) -> Iterable[tuple[int, Row]]:
