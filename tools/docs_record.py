@@ -40,8 +40,8 @@ class Row:
 
     Parameters
     ----------
-    page : the page among whose commands it was run. code : exit code; None: ended as too long. seconds : s.
-    date : of the commit that was checked out.
+    page : the page among whose commands it was run. code : exit code; None: ended as too long.
+    seconds : by the clock, so longer on a busy machine. date : of the commit that was checked out.
     """
 
     page: str
