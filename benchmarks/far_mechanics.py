@@ -63,12 +63,13 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--law", default="fem", help="strain law of the data (fem)")
     parser.add_argument("--hot", type=float, nargs="*", default=[25.0, 0.0], help="road warmer than stated, K (25, 0)")
     parser.add_argument("--seed", type=int, default=5)
+    parser.add_argument("--largest", type=int, default=3, help="most effects in a set (3)")
     given = parser.parse_args(arguments)
     study = tf.study("hidden-effect")
     for warmer_by in given.hot:
         runs = measured(study, truth(study, given.seed, warmer_by), given.law)
         began = time.process_time()
-        d = diagnose(study, runs, rerun=False, looks=1)
+        d = diagnose(study, runs, largest=given.largest, rerun=False, looks=1)
         before, after = (d.rms(after=each, held_out=True) for each in (False, True))
         names = ", ".join(member.key for member in d.best.members) or "-"
         taken = d.better_law.trial.law if d.better_law else "-"
