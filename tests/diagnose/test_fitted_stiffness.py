@@ -59,9 +59,9 @@ def test_fits_solve_no_strain_cycle_for_each_point(tmp_path: Path, monkeypatch: 
     solved: list[Any] = []
     inflate = inflation.inflate
 
-    def counted(*given: Any) -> Any:
+    def counted(*given: Any, **options: Any) -> Any:
         solved.append(given)
-        return inflate(*given)
+        return inflate(*given, **options)
 
     monkeypatch.setattr(inflation, "inflate", counted)
     here = model.predict(0, {})

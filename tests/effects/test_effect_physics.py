@@ -349,7 +349,7 @@ def test_what_follows_the_drive_is_constant_where_the_drive_is(name: str) -> Non
 
 
 def test_what_changes_by_itself_does_not_claim_to_follow_the_drive() -> None:
-    assert len(OF_DRIVE) == 8
+    assert len(OF_DRIVE) == 9
     drifting = tyre([{"name": "ambient-drift", "rate": "10 delta_degC/hour"}])
     assert not drifting.acting.follows_drive
     assert surroundings(drifting, 100.0) != surroundings(drifting, 0.0)

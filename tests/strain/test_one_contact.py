@@ -133,9 +133,9 @@ def test_a_run_with_the_same_tyre_solves_nothing_again(monkeypatch: pytest.Monke
     solved: list[float] = []
     inflate = inflation.inflate
 
-    def counted(*given: Any) -> Any:
+    def counted(*given: Any, **options: Any) -> Any:
         solved.append(given[1])
-        return inflate(*given)
+        return inflate(*given, **options)
 
     monkeypatch.setattr(inflation, "inflate", counted)
     pressed_tyre.REMEMBERED_TYRES.clear()
