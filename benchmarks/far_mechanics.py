@@ -34,6 +34,7 @@ from tyrefem.measured import MeasuredRun
 
 #: Share of a draw from the priors by which base numbers and sensors are off.
 OFF = 0.3
+#: Mesh of the data.
 MESH = "5 mm"
 
 

@@ -97,9 +97,10 @@ class Work:
         study = base.study.replace(self.changes, base.study)
         if same_cycles(study, base.study):
             return RollingTyre(study, base, base.cycles)
-        # Energies of another section have other places.
-        nearby = base.near is None or study.section == base.study.section
-        return RollingTyre(study, base, None if nearby else cycle_schedule(study))
+        if base.near is not None and study.section != base.study.section:
+            # Energies of another section have other places.
+            return RollingTyre(study, base, cycle_schedule(study))
+        return RollingTyre(study, base)
 
     def result(self) -> ResultData:
         """The simulated run."""

@@ -106,22 +106,25 @@ class SelectionProblem(Brief):
         settings = self.settings
         rows = {self.ordered(entry.members): entry for entry in scored}
         gap = scored[0].score - max((entry.score for entry in scored if entry.fit is None), default=float("-inf"))
+        tried: set[Members] = set()
         changed = False
         for _ in range(settings.most_settlings):
-            fits = {members: entry.fit for members, entry in rows.items() if entry.fit is not None}
-            top = max(rows[members].score for members in fits)
+            top = max(entry.score for entry in rows.values() if entry.fit is not None)
             left = [
-                fit
-                for members, fit in fits.items()
-                if rows[members].score > top - settings.leading_score and fit.worth_settling
+                entry.fit
+                for entry in rows.values()
+                if entry.fit is not None and entry.score > top - settings.leading_score and entry.fit.worth_settling
             ]
-            left += self._stuck_parts(rows)
-            if not left:
+            parts = {members: part for members, part in self._stuck_parts(rows).items() if members not in tried}
+            tried |= set(parts)
+            if not left and not parts:
                 break
             changed = True
-            for fit in self.continued(left):
+            for number, fit in enumerate(self.continued([*left, *parts.values()])):
                 members, score = self.ordered(fit.members), self.score(fit)
-                if members not in fits or fits[members] in left or score > rows[members].score:
+                known = rows.get(members)
+                # A part keeps its own fit if that is the better one.
+                if number < len(left) or known is None or known.fit is None or score > known.score:
                     rows[members] = ScoredSet(score, members, fit)
         if not changed:
             return list(scored)
@@ -132,8 +135,8 @@ class SelectionProblem(Brief):
         )
         return sorted(capped, key=lambda entry: -entry.score)
 
-    def _stuck_parts(self, rows: Mapping[Members, ScoredSet]) -> list[FittedSet]:
-        """Starts for parts of the best set whose fits ended far from their best points.
+    def _stuck_parts(self, rows: Mapping[Members, ScoredSet]) -> dict[Members, FittedSet]:
+        """Parts of the best set whose fits ended far from their best points: part -> start for its fit.
 
         The linear model about the best fit, without one effect, predicts the score of the rest. Where it is among the
         leading ones, and more than ``near_score`` above that of the rest's own fit, the fit of the rest must start
@@ -141,10 +144,9 @@ class SelectionProblem(Brief):
         """
         settings = self.settings
         best = max((entry for entry in rows.values() if entry.fit is not None), key=lambda entry: entry.score)
-        parts = []
-        for member in best.members if best.fit is not None else ():
-            if best.fit is None or member.presence:
-                continue
+        assert best.fit is not None
+        parts = {}
+        for member in (each for each in best.members if not each.presence):
             part = best.fit.without([member])
             members = self.ordered(part.members)
             gain = self.criterion.of_linear(part.linear, ()) - self.criterion.of_linear(best.fit.linear, ())
@@ -152,7 +154,7 @@ class SelectionProblem(Brief):
             known = rows.get(members)
             beyond = known is None or known.fit is None or score > known.score + settings.near_score
             if score > best.score - settings.leading_score and beyond:
-                parts.append(part)
+                parts[members] = part
         return parts
 
     def settled_fit(self, fit: FittedSet) -> FittedSet:
