@@ -74,7 +74,8 @@ def cases(study: StudyData, count: int, seed: int) -> list[BlindCase]:
     """``count`` blind cases; the kinds have the shares of `KINDS`, and the candidate effects take turns.
 
     Effects of `NEVER_HIDDEN` take none. The variant of an effect (a sensor) is drawn at random. Amplitudes are
-    log-uniform from 0.25 to 3 prior standard deviations. If the study has fewer than two physical candidates, cases of kind "two" become cases of kind "one".
+    log-uniform from 0.25 to 3 prior standard deviations. If the study has fewer than two physical candidates, cases of
+    kind "two" become cases of kind "one".
     """
     candidates = catalogue_candidates(study)
     names = sorted({candidate.name for candidate in candidates} - set(NEVER_HIDDEN))
