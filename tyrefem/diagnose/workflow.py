@@ -381,8 +381,9 @@ def rank(
     best_fit = ahead.fit or (null if ahead.outside else fit_of(ahead.members))
     if judgement.verdict == NO_GAP:
         return Ranking(judgement, best_fit, null, missing, fit_of, movements_of(best_fit))
+    beside = replace(problem, predictions=predictions.simulating)
     robust = robustness(
-        problem,
+        beside,
         scored,
         certain=judgement.verdict == IDENTIFIED and not law_replaced,
         explained=judgement.verdict != UNEXPLAINED,
@@ -390,14 +391,14 @@ def rank(
     revision, heat = beside_discrepancies(judgement, robust, settings, law_replaced=law_replaced), None
     if revision.members:
         leading = robust.models[0]
-        heat = free_heat(problem, leading.size, leading.log_evidence(revision.members))
+        heat = free_heat(beside, leading.size, leading.log_evidence(revision.members))
         robust = replace(robust, heat=heat)
         revision = beside_discrepancies(judgement, robust, settings, law_replaced=law_replaced, heat=heat)
     if partly := revision.members:
         if tick:
             tick("trying other strain laws")
         sets = dict.fromkeys(problem.ordered(each) for each in ((), *((member,) for member in partly), partly))
-        robust = beside_strain_laws(problem, robust, [fit_of(members) for members in sets])
+        robust = beside_strain_laws(beside, robust, [fit_of(members) for members in sets])
         revision = beside_discrepancies(judgement, robust, settings, law_replaced=law_replaced, heat=heat)
     judgement = judgement.revised(revision.verdict, revision.reasons, revision.doubts)
     partly = revision.members
@@ -408,7 +409,7 @@ def rank(
             of_effects = {member: every[member] for member in sure}
         return Ranking(judgement, best_fit, null, missing, fit_of, movements_of(best_fit), robust, of_effects)
     alone = fit_of(problem.ordered(partly))
-    best_fit = fit_beside(problem, robust.models[0], alone)
+    best_fit = fit_beside(beside, robust.models[0], alone)
     over_time = heat_over_time(residuals, predictions.evaluations, alone, fitting)
     missing = with_course(missing_heat(residuals, origin.patches, alone), over_time)
     moved = movements(residuals, predictions, best_fit)

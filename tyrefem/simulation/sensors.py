@@ -46,19 +46,20 @@ def true_places(study: StudyData) -> dict[str, tuple[float, float]]:
     stated = study.stated_places
     section, true = study.section, dict(stated)
     worn_away = () if section.as_built is None else [name for name in stated if not section.contains([stated[name]])[0]]
-    moved: dict[str, tuple[float, float]] = {}
-    effects = study.effects
-    for name in stated:
-        moves = [move for effect in effects if (move := effect.displacement(name)) != (0.0, 0.0)]
-        if moves or name in worn_away:
-            along, deeper = (sum(part) for part in zip((0.0, 0.0), *moves, strict=True))
-            moved[name] = along, deeper
+    displaced = displacements(study)
+    moved = {name: displaced[name] for name in stated if displaced[name] != (0.0, 0.0) or name in worn_away}
     if moved:
         s, depth = section.locate(np.array([stated[name] for name in moved]))
         along_by, deeper_by = np.array(list(moved.values())).T
         places = section.place(*section.clamp(s + along_by, depth + deeper_by, 0.0))
         true |= {name: (float(r), float(z)) for name, (r, z) in zip(moved, places, strict=True)}
     return true
+
+
+def displacements(study: StudyData) -> dict[str, tuple[float, float]]:
+    """Distance of every sensor from its stated place by the study's effects, along the meridian and in depth, m."""
+    moves = {name: [effect.displacement(name) for effect in study.effects] for name in study.stated_places}
+    return {name: (sum(along for along, _ in each), sum(deeper for _, deeper in each)) for name, each in moves.items()}
 
 
 def recorded(study: StudyData, times: Array, temperatures: ArrayLike) -> dict[str, Array]:

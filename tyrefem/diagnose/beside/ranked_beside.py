@@ -33,6 +33,8 @@ from tyrefem.mechanics.strain_laws import strain_laws
 FAR = 60.0
 #: A fit with half waves beyond so many prior standard deviations asks for wider priors; fits that are continued there.
 STRAIN, RENEWED = 2.5, 2
+#: A strain law whose fits keep a misfit above this times the number of readings is not searched for further sets.
+NEAR = 10.0
 #: A model is probable enough for further fits from this probability on.
 PROBABLE = 1e-3
 #: Beside a discrepancy of this size noise explains the misfit, so that no larger one is tried.
@@ -92,6 +94,12 @@ class RankedBeside(Brief):
     def far(self) -> bool:
         """Whether the fits lie far from the study, where sensitivities differ from those at x = 0: priors are wide."""
         return bool(self.discrepancy.nuisance) and self.discrepancy.width > 1.0 and self.discrepancy.size == 0.0
+
+    @property
+    def near(self) -> bool:
+        """Whether some fit is so near the data that other sets may explain them; else the discrepancy is refuted."""
+        fit = min(self.fits.values(), key=lambda fit: fit.misfit)
+        return fit.misfit < NEAR * fit.readings
 
     def score(self, members: Members) -> float:
         """ln(prior) + ln evidence of a fitted set."""
@@ -173,18 +181,41 @@ class RankedBeside(Brief):
         """
         best = self.best
         to_end = {self.problem.ordered(best.members), ()}
-        ended = []
+        ended = self._hidden_rivals() if parts else []
         for member in best.members if parts else ():
             to_end.add(max((members for members in self.fits if member not in members), key=self.score, default=()))
             part = self.fits.get(tuple(each for each in self.problem.ordered(best.members) if each != member))
             if not member.presence and (part is None or not _good(part)):
                 ended.append(best.without([member]))
+        # A part that begins where the best fit ends needs no second start.
+        to_end -= {self.problem.ordered(fit.members) for fit in ended}
         ended += [self.fits[members] for members in to_end if members in self.fits and not _good(self.fits[members])]
         if not ended:
             return False
         self._take(continued(self.residuals, self.problem.predictions, ended, self.problem._count))
         self._estimate()
         return True
+
+    def _hidden_rivals(self) -> list[FittedSet]:
+        """Starts for sets near the best one whose own fits ended far from their best points.
+
+        A leading fit shows it: without one of its effects, its linear model predicts a score that is more than
+        ``near_score`` above that of the set's own fit.
+        """
+        settings, top = self.problem.settings, max(map(self.score, self.fits))
+        starts: dict[Members, tuple[float, FittedSet]] = {}
+        for members, fit in self.fits.items():
+            if self.score(members) < top - settings.far_score or fit is self.best:
+                continue
+            for member in members:
+                part = tuple(each for each in members if each != member)
+                if (known := self.fits.get(part)) is None or _good(known):
+                    continue
+                value = self.problem.prior(part) + _without(fit, member, self.residuals.log_det)
+                promising = value > max(self.score(part) + settings.near_score, top - settings.leading_score)
+                if promising and value > starts.get(part, (-math.inf,))[0]:
+                    starts[part] = value, fit.without([member])
+        return [start for _, start in starts.values()]
 
     def _search(self) -> None:
         settings, top = self.problem.settings, -math.inf
@@ -474,7 +505,8 @@ def beside_strain_laws(problem: SelectionProblem, robust: Robustness, fits: Sequ
             continue
         beside = RankedBeside(problem, beside_law(residuals, name, answers), named)
         beside.begin({problem.ordered(fit.members): fit for fit in fits})
-        beside.further()
+        if beside.near:
+            beside.further()
         law_sets = under(beside.discrepancy, beside.residuals, beside.scored())
         tried.append(replace(law_sets, probability=math.nan))
     return replace(robust, laws=tuple(tried), untried=tuple(untried))

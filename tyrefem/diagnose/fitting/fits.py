@@ -13,6 +13,7 @@ from scipy.special import chdtrc
 
 from tyrefem.brief import Brief
 from tyrefem.diagnose.data.residuals import Residuals
+from tyrefem.diagnose.fitting.displaced_steps import displaced_steps
 from tyrefem.diagnose.fitting.gauss_newton import FitState, initial_state
 from tyrefem.diagnose.forward.multifidelity import Predictions
 from tyrefem.diagnose.inference.evidence import Posterior
@@ -210,10 +211,16 @@ def _fitted(pairs: Sequence[tuple[Residuals, FitState]], predictions: Prediction
     while active := [place for place, state in enumerate(current) if not state.done]:
         numbers = residuals[active[0]].fitted
         points = [place for place in active if not current[place].needs_tangents]
+        refined = displaced_steps(
+            [residuals[place] for place in points], predictions, [current[place] for place in points]
+        )
+        for place, state in zip(points, refined, strict=True):
+            current[place] = state
+        points = [place for place in points if not (current[place].done or current[place].needs_tangents)]
         questions = [(current[place].members, current[place].next_values) for place in points]
         for place, answers in zip(points, predictions.predict(questions, numbers, tick), strict=True):
             current[place] = _advanced(residuals[place], current[place], answers)
-        tangents = [place for place in active if current[place].needs_tangents]
+        tangents = [place for place in active if current[place].needs_tangents and not current[place].done]
         places = [
             (current[place].members, current[place].unknowns, current[place].current_values) for place in tangents
         ]

@@ -36,6 +36,7 @@ class FitState(Brief):
     done : the fit has ended. converged : further steps would not reduce the misfit noticeably.
     continuation : the state continues a first fit. jacobian_outdated : J was not taken at x.
     needs_tangents : J is needed at x. simulated : x was simulated.
+    expected, next_jacobian : (n,) residuals at the next point and the linear model there, known better than by J; None: by J.
     """
 
     members: Members
@@ -58,6 +59,8 @@ class FitState(Brief):
     jacobian_outdated: bool = False
     needs_tangents: bool = False
     simulated: bool = True
+    expected: Array | None = None
+    next_jacobian: Array | None = None
 
     @property
     def next_values(self) -> dict[Unknown, float]:
@@ -75,19 +78,24 @@ class FitState(Brief):
         return dict(zip(self.unknowns, (float(value) for value in x), strict=True)) | dict.fromkeys(fixed, 1.0)
 
     @cached_property
-    def _prior(self) -> tuple[Array, Array, Array]:
+    def prior(self) -> tuple[Array, Array, Array]:
+        """Standard deviation, lowest and highest x of the unknowns, (k,) each."""
         limits = np.array([(unknown.sd, unknown.low, unknown.high) for unknown in self.unknowns]).reshape(-1, 3)
         return limits[:, 0], limits[:, 1], limits[:, 2]
 
     def fitted(self, radius: float = np.inf) -> Posterior:
         """Posterior of the linear model about x, within a box of ``radius`` prior sd about x."""
-        sd, low, high = self._prior
+        sd, low, high = self.prior
         low, high = np.maximum(low, self.x - radius * sd), np.minimum(high, self.x + radius * sd)
         return posterior(self.J.T @ self.J, self.J.T @ (self.r + self.J @ self.x), sd, low, high)
 
+    def best_within(self, data: Array, J: Array, low: Array, high: Array) -> Array:
+        """(k,) best point of another linear model data = J x + e, with the unknowns' priors, within a box."""
+        return posterior(J.T @ J, J.T @ data, self.prior[0], low, high).mean
+
     def misfit(self, r: Array, x: Array) -> float:
         """|r|^2 + |x/sd|^2."""
-        return float(r @ r + ((x / self._prior[0]) ** 2).sum())
+        return float(r @ r + ((x / self.prior[0]) ** 2).sum())
 
     def _reduction_at(self, x: Array) -> float:
         """Reduction of the misfit at a point, predicted by the linear model."""
@@ -111,40 +119,63 @@ class FitState(Brief):
 
     def proposed(self) -> FitState:
         """The state with the next point, or the finished fit."""
-        state = replace(self, posterior=self.fitted(), next_point=self.fitted(self.radius).mean)
+        state = replace(
+            self, posterior=self.fitted(), next_point=self.fitted(self.radius).mean, expected=None, next_jacobian=None
+        )
         if state.predicted_reduction < self.settings.least_reduction:
             return replace(state, done=True, converged=True)
         return replace(state, done=state.done or self.steps >= self.limit or self.radius < self.settings.trust_smallest)
+
+    def expecting(self, next_point: Array, r: Array, J: Array) -> FitState:
+        """The state with another next point, at which residuals ``r`` and the linear model ``J`` are expected.
+
+        The fit has converged if little is to be gained there, unless a narrow trust region is the reason.
+        """
+        state = replace(self, next_point=next_point, expected=r, next_jacobian=J)
+        gain = self.misfit(self.r, self.x) - self.misfit(r, next_point)
+        if gain >= self.settings.least_reduction or state._limited:
+            return state
+        return replace(self, done=True, converged=True)._confirmed()
 
     def rejected(self) -> FitState:
         """The state after a next point at which the tyre is impossible."""
         return replace(self, steps=self.steps + 1, radius=self.settings.trust_shorter * self._reach).proposed()
 
     @property
+    def _limited(self) -> bool:
+        """Whether the trust region ends the step to the next point."""
+        return bool((np.abs(self.next_point - self.x) / self.prior[0] > 0.99 * self.radius).any())
+
+    @property
     def _reach(self) -> float:
         """Largest distance from x to the next point, prior sd."""
-        return float(np.abs((self.next_point - self.x) / self._prior[0]).max(initial=0.0))
+        return float(np.abs((self.next_point - self.x) / self.prior[0]).max(initial=0.0))
 
     def accepted(self, computed: Mapping[int, Array], r: Array) -> FitState:
         """The state after the simulations at the next point: block means by run, and whitened residuals (n,)."""
-        settings, sd, reach = self.settings, self._prior[0], self._reach
+        settings, sd, reach = self.settings, self.prior[0], self._reach
         step = self.next_point - self.x
-        prediction_error = (self.r - self.J @ step) - r
-        predicted_reduction, reduction = (
-            self._reduction_at(self.next_point),
-            self.misfit(self.r, self.x) - self.misfit(r, self.next_point),
-        )
-        J = self.J
+        expected = self.r - self.J @ step if self.expected is None else self.expected
+        prediction_error = expected - r
+        before = self.misfit(self.r, self.x)
+        predicted_reduction = before - self.misfit(expected, self.next_point)
+        reduction = before - self.misfit(r, self.next_point)
+        # Broyden's update: the smallest change of J, in prior sd, that predicts this simulation.
+        change = np.zeros_like(self.J)
         if reach > 0:
-            # Broyden's update: the smallest change of J, in prior sd, that predicts this simulation.
-            J = J + np.outer(prediction_error, step / sd**2) / float(((step / sd) ** 2).sum())
-        state = replace(self, J=J, steps=self.steps + 1, simulated=True)
+            change = np.outer(prediction_error, step / sd**2) / float(((step / sd) ** 2).sum())
+        state = replace(
+            self, J=self.J + change, steps=self.steps + 1, simulated=True, expected=None, next_jacobian=None
+        )
         if reduction < 0 and self.simulated:
             state = replace(state, radius=settings.trust_shorter * reach)
             return state._with_tangents() if state.jacobian_outdated and state._may_take_tangents else state.proposed()
-        limited = bool((np.abs(step / sd) > 0.99 * self.radius).any())
+        limited = self._limited
         radius = self.radius * settings.trust_wider if limited and reduction > predicted_reduction / 2 else self.radius
-        state = replace(state, x=self.next_point, r=r, computed=dict(computed), jacobian_outdated=True, radius=radius)
+        J = (self.J if self.next_jacobian is None else self.next_jacobian) + change
+        state = replace(
+            state, x=self.next_point, r=r, J=J, computed=dict(computed), jacobian_outdated=True, radius=radius
+        )
         if not self.simulated:
             return state._requesting_tangents(())
         return state._judged(prediction_error, reduction, limited=limited)
@@ -162,16 +193,14 @@ class FitState(Brief):
         if not limited and off < settings.close_prediction:
             state = replace(state, done=True, converged=True)
         state = replace(state, done=state.done or slow)
-        if (
-            state.converged
-            and state.continuation
-            and state.jacobian_outdated
-            and state._may_take_tangents
-            and state._misfit_is_improbable
-        ):
-            # After many secant corrections, J may wrongly predict that no reduction is left.
-            return replace(state, done=False, converged=False)._with_tangents()
-        return state
+        return state._confirmed()
+
+    def _confirmed(self) -> FitState:
+        """The state; with new tangents in place of an end that J may wrongly predict after many secant corrections."""
+        ended = self.converged and self.continuation and self.jacobian_outdated
+        if ended and self._may_take_tangents and self._misfit_is_improbable:
+            return replace(self, done=False, converged=False)._with_tangents()
+        return self
 
     def _with_tangents(self) -> FitState:
         return replace(self, tangents=self.tangents - 1)._requesting_tangents(self.shapes)

@@ -25,7 +25,7 @@ from tyrefem.geometry.wall import inside_mesh
 from tyrefem.inputs.study import StudyData
 from tyrefem.mechanics.nearby_cycles import NearbyCycles
 from tyrefem.simulation.rolling_tyre import RollingTyre
-from tyrefem.simulation.sensors import recorded, recorded_change, true_places
+from tyrefem.simulation.sensors import displacements, recorded, recorded_change, true_places
 from tyrefem.simulation.surroundings import GAS, RIM
 
 Array = NDArray[np.float64]
@@ -129,6 +129,19 @@ class FixedStepRun:
             if name in names
         }
         return read(self.study, self.grid, at_sensors, lumped)
+
+    def displaced(self, shifts: Array) -> dict[str, Array]:
+        """Sensor -> (n_grid, n_shifts) degC on `grid` if the sensors were elsewhere, the contained air not included.
+
+        ``shifts`` (n_shifts, n_sensors, 2) m: along the meridian and in depth, from the sensors' places.
+        """
+        section = self.tyre.study.section
+        s, depth = section.locate(np.array(list(self.study.stated_places.values())).reshape(-1, 2))
+        known = np.array(list(displacements(self.study).values())).reshape(-1, 2)
+        along, deeper = np.moveaxis(known + shifts, -1, 0)
+        points = inside_mesh(section, self.tyre.mesh.size, (s + along).ravel(), (depth + deeper).ravel())
+        temperatures = self._computed(points).reshape(len(self.grid), *shifts.shape[:2])
+        return recorded(self.study, self.grid, temperatures.swapaxes(1, 2))
 
 
 def sensor_points(study: StudyData, tyre: RollingTyre) -> Array:

@@ -280,6 +280,21 @@ class ForwardModel(Brief):
             return np.full(self.drives[number].size, np.nan)
         return self.blocks(number, simulated.grid, simulated.readings)
 
+    def displaced(self, number: int, values: Values, shifts: Array) -> Array:
+        """(n_shifts, n_blocks) K: change of the block means if sensors are moved at the temperatures of a simulation.
+
+        ``shifts`` (n_shifts, n_sensors, 2) m: along the meridian and in depth; sensors as in the study.
+        """
+        here = self._simulated(number, values)
+        readings = here.displaced(np.concatenate([np.zeros((1, *shifts.shape[1:])), shifts]))
+        parts = [
+            each.sampled(here.grid, change - change[:, :1])
+            if (change := readings.get(each.sensor)) is not None
+            else np.zeros((len(each.starts), len(shifts) + 1))
+            for each in self.drives[number].sensors
+        ]
+        return np.concatenate(parts).T[1:]
+
     def _simulated(self, number: int, values: Values) -> FixedStepRun:
         """Fixed-step simulation on the mesh and with the operators of `base`; the latest ones are kept."""
         base = self.base(number)
