@@ -51,14 +51,15 @@ class _Trial:
         """The trial of a state; None if no sensor moves in its step."""
         if state.done or not state.simulated or any(member.presence for member in state.members):
             return None
-        sensors = list(residuals.study.stated_places)
-        own = {
-            place: (sensors.index(dict(unknown.choice)["sensor"]), DIRECTIONS.index(unknown.parameter.name))
+        moving = {
+            place: (dict(unknown.choice)["sensor"], DIRECTIONS.index(unknown.parameter.name))
             for place, unknown in enumerate(state.unknowns)
             if unknown.effect == SensorMisplaced.name and unknown.parameter is not None
         }
-        if not any(state.next_point[place] != state.x[place] for place in own):
+        if not any(state.next_point[place] != state.x[place] for place in moving):
             return None
+        sensors = list(residuals.study.stated_places)
+        own = {place: (sensors.index(sensor), direction) for place, (sensor, direction) in moving.items()}
         return cls(state, residuals, own, state.x, state.r, state.J, state.next_point)
 
     def shifts(self) -> Array:

@@ -36,7 +36,8 @@ class FitState(Brief):
     done : the fit has ended. converged : further steps would not reduce the misfit noticeably.
     continuation : the state continues a first fit. jacobian_outdated : J was not taken at x.
     needs_tangents : J is needed at x. simulated : x was simulated.
-    expected, next_jacobian : (n,) residuals at the next point and the linear model there, known better than by J; None: by J.
+    expected, next_jacobian : (n,) residuals at the next point and the linear model there, where they are known better
+        than by J; None: by J.
     """
 
     members: Members
