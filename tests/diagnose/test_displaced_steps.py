@@ -52,9 +52,9 @@ def test_moved_sensors_read_what_a_simulation_says(owner: tf.Study, at: float) -
     changes = model.displaced(0, values, shifts)
     names = list(owner.stated_places)
     for change, shift in zip(changes, shifts, strict=True):
+        by_name = dict(zip(names, shift.tolist(), strict=True))
         moved = {
-            each: values[each]
-            + shift[names.index(dict(each.choice)["sensor"]), ("along", "deeper").index(each.parameter.name)]
+            each: values[each] + by_name[dict(each.choice)["sensor"]][("along", "deeper").index(each.parameter.name)]
             for each in places
             if each.parameter
         }
@@ -93,7 +93,10 @@ def state_of(curve: Curve, run: MeasuredDrive) -> tuple[FitState, Any]:
     state = initial_state(LinearModel(design, run.measured), {0: np.zeros(N)}, (), DEFAULT)
     sensor = dict(curve.place.choice)["sensor"]
     residuals = SimpleNamespace(
-        study=SimpleNamespace(stated_places={sensor: (0.0, 0.0)}), fitted=[0], runs=(run,), joined=np.concatenate
+        study=SimpleNamespace(stated_places={sensor: (0.0, 0.0)}, card=SimpleNamespace(effects=())),
+        fitted=[0],
+        runs=(run,),
+        joined=np.concatenate,
     )
     return state, residuals
 

@@ -15,16 +15,12 @@ from numpy.typing import NDArray
 
 from tyrefem.diagnose.data.residuals import Residuals
 from tyrefem.diagnose.fitting.gauss_newton import FitState
+from tyrefem.diagnose.forward.fixed_step import QUOTIENT
 from tyrefem.diagnose.forward.multifidelity import Predictions
-from tyrefem.effects.sensor_misplaced import SensorMisplaced
 
 Array = NDArray[np.float64]
 #: Trials of one step at most; a trial that fails shortens the next one to this share.
 ROUNDS, SHORTER = 6, 0.4
-#: Difference quotients over a place, m.
-QUOTIENT = 2e-5
-#: Parameters of a displacement, in the order of a shift.
-DIRECTIONS = ("along", "deeper")
 
 
 @dataclass
@@ -52,11 +48,12 @@ class _Trial:
         if state.done or not state.simulated or any(member.presence for member in state.members):
             return None
         moving = {
-            place: (dict(unknown.choice)["sensor"], DIRECTIONS.index(unknown.parameter.name))
-            for place, unknown in enumerate(state.unknowns)
-            if unknown.effect == SensorMisplaced.name and unknown.parameter is not None
+            place: moved for place, unknown in enumerate(state.unknowns) if (moved := unknown.moves_sensor) is not None
         }
         if not any(state.next_point[place] != state.x[place] for place in moving):
+            return None
+        if any(effect.overrides("channel") for effect in residuals.study.card.effects):
+            # A channel records another sensor.
             return None
         sensors = list(residuals.study.stated_places)
         own = {place: (sensors.index(sensor), direction) for place, (sensor, direction) in moving.items()}

@@ -34,6 +34,8 @@ Array = NDArray[np.float64]
 LEAST_STEP = 1.0
 #: Drives of fewer steps take all of them for sensitivities.
 FEW = 16
+#: Difference quotients over the place of a sensor, m.
+QUOTIENT = 2e-5
 #: Places of sensors in a mesh, by section, size of the elements and true places.
 _POINTS: Cache[Array] = Cache(size=256)
 
@@ -243,6 +245,7 @@ class ReadingSensitivities:
     ----------
     again : number of an unknown -> second simulation or measurement with the unknown one step further.
     columns : numbers of the other unknowns. tangents : dT/dx of these unknowns, in this order.
+    moved : number of an unknown that moves one sensor -> the sensor, and the direction (0: along, 1: in depth).
     failed : numbers of unknowns with which no tyre can be built; their sensitivities are NaN.
     """
 
@@ -252,6 +255,7 @@ class ReadingSensitivities:
     columns: Sequence[int]
     tangents: Tangents | None
     failed: Sequence[int] = ()
+    moved: Mapping[int, tuple[str, int]] = field(default_factory=dict)
 
     @property
     def of_tangents(self) -> list[Unknown]:
@@ -264,10 +268,9 @@ class ReadingSensitivities:
         slopes = {sensor: np.zeros((len(base.grid), len(self.unknowns))) for sensor in sensors}
         for sensor in sensors:
             slopes[sensor][:, list(self.failed)] = np.nan
-        measured = [other for other in self.again.values() if other.values is base.values]
-        if measured and base.study.sensors:
-            # One search in the mesh for the places of all displaced sensors.
-            base._at_points(np.unique(np.vstack([other.sensor_points for other in measured]), axis=0))
+        for column, (sensor, direction) in self.moved.items():
+            if sensor in slopes:
+                slopes[sensor][:, column] = self._over_places[sensor][:, direction]
         for column, other in self.again.items():
             for sensor in sensors:
                 change = other.readings[sensor] - base.readings[sensor]
@@ -276,6 +279,14 @@ class ReadingSensitivities:
             for sensor, of_tangents in self._from_tangents(self.tangents, sensors).items():
                 slopes[sensor][:, self.columns] = of_tangents
         return slopes
+
+    @cached_property
+    def _over_places(self) -> dict[str, Array]:
+        """Sensor -> (n_grid, 2) d(reading)/d(place) along the meridian and in depth, K/m."""
+        base = self.base
+        shifts = np.zeros((3, len(base.study.stated_places), 2))
+        shifts[1, :, 0] = shifts[2, :, 1] = QUOTIENT
+        return {name: (each[:, 1:] - each[:, :1]) / QUOTIENT for name, each in base.displaced(shifts).items()}
 
     def _from_tangents(self, tangents: Tangents, sensors: Sequence[str]) -> dict[str, Array]:
         base, gas, slopes = self.base, list(self.base.tyre.problem.reservoirs), {}

@@ -415,8 +415,13 @@ class ForwardModel(Brief):
         failed: list[int] = []
         columns: list[int] = []
         perturbed: list[Perturbed] = []
+        moved: dict[int, tuple[str, int]] = {}
+        swapped = any(effect.overrides("channel") for effect in base.study.effects)
         for column, unknown in enumerate(unknowns):
             if not unknown.acts_in(origin.card.run):
+                continue
+            if not swapped and (move := unknown.moves_sensor) is not None:
+                moved[column] = move
                 continue
             try:
                 study = self.with_values(origin, {**at, unknown: at.get(unknown, 0.0) + unknown.step}, base.study)
@@ -445,7 +450,7 @@ class ForwardModel(Brief):
             failed += impossible
             columns = list(alone)
             derivatives = _tangents(base, list(alone.values()), double=double)
-        return ReadingSensitivities(base, tuple(unknowns), again, columns, derivatives, failed)
+        return ReadingSensitivities(base, tuple(unknowns), again, columns, derivatives, failed, moved)
 
 
 def _acting(study: StudyData, values: Values) -> Values:

@@ -10,6 +10,7 @@ from typing import Any
 from tyrefem.cache import Cache
 from tyrefem.effects import catalogue
 from tyrefem.effects.effect import Effect, Parameter, Prior
+from tyrefem.effects.sensor_misplaced import SensorMisplaced
 from tyrefem.inputs.changes import scaled
 from tyrefem.inputs.name_patterns import number_at
 from tyrefem.inputs.study import StudyData
@@ -104,6 +105,13 @@ class Unknown:
     def measures(self) -> bool:
         """Whether the unknown changes only the measurement, not the tyre."""
         return self.effect is not None and catalogue()[self.effect].only_measures()
+
+    @property
+    def moves_sensor(self) -> tuple[str, int] | None:
+        """The sensor that the unknown moves, and the direction: 0 along the meridian, 1 in depth. None: no sensor."""
+        if self.effect != SensorMisplaced.name or self.parameter is None or self.runs:
+            return None
+        return dict(self.choice)["sensor"], ("along", "deeper").index(self.parameter.name)
 
     def value(self, x: float) -> float:
         """The value of the parameter, SI; for a base number its factor."""
