@@ -223,8 +223,10 @@ def test_the_verdict_is_that_of_simulations_alone(drives: Drives, never: Diagnos
         == [unknown.key for unknown in never.best.members]
         == ["hot-road"]
     )
+    # A fit ends when the misfit falls by less than least_reduction: the root of that, in standard deviations.
+    assert auto.best.misfit == pytest.approx(never.best.misfit, abs=DEFAULT.least_reduction)
     for unknown, x in never.best.values.items():
-        assert abs(auto.best.values[unknown] - x) < 0.2 * max(never.best.sd[unknown], 1e-9)
+        assert abs(auto.best.values[unknown] - x) < np.sqrt(DEFAULT.least_reduction) * max(never.best.sd[unknown], 1e-9)
     assert auto.judgement.probability == pytest.approx(never.judgement.probability, abs=0.02)
     account = auto.to_dict()["reduced"]
     assert account["used"]

@@ -27,14 +27,14 @@ ROUNDS, SHORTER = 6, 0.4
 class _Trial:
     """The search for a state's next point at fixed temperatures.
 
-    ``own``: places of the displacements among the unknowns -> number of the sensor, number of the direction.
+    ``moved``: numbers of the displacements among the unknowns -> number of the sensor, number of the direction.
     ``y``, ``r``, ``J``: best point so far, residuals and linear model there. ``reach``: box about it for displacements,
     prior sd.
     """
 
     state: FitState
     residuals: Residuals
-    own: dict[int, tuple[int, int]]
+    moved: dict[int, tuple[int, int]]
     y: Array
     r: Array
     J: Array
@@ -48,7 +48,7 @@ class _Trial:
         if state.done or not state.simulated or any(member.presence for member in state.members):
             return None
         moving = {
-            place: moved for place, unknown in enumerate(state.unknowns) if (moved := unknown.moves_sensor) is not None
+            place: move for place, unknown in enumerate(state.unknowns) if (move := unknown.moves_sensor) is not None
         }
         if not any(state.next_point[place] != state.x[place] for place in moving):
             return None
@@ -56,13 +56,13 @@ class _Trial:
             # A channel records another sensor.
             return None
         sensors = list(residuals.study.stated_places)
-        own = {place: (sensors.index(sensor), direction) for place, (sensor, direction) in moving.items()}
-        return cls(state, residuals, own, state.x, state.r, state.J, state.next_point)
+        moved = {place: (sensors.index(sensor), direction) for place, (sensor, direction) in moving.items()}
+        return cls(state, residuals, moved, state.x, state.r, state.J, state.next_point)
 
     def shifts(self) -> Array:
         """(3, n_sensors, 2) m from the state's places: of the trial, and with all sensors a little further."""
         shifts = np.zeros((3, len(self.residuals.study.stated_places), 2))
-        for place, (sensor, direction) in self.own.items():
+        for place, (sensor, direction) in self.moved.items():
             shifts[:, sensor, direction] += self.trial[place] - self.state.x[place]
         shifts[1, :, 0] += QUOTIENT
         shifts[2, :, 1] += QUOTIENT
@@ -71,9 +71,9 @@ class _Trial:
     def answered(self, changes: Sequence[Array]) -> None:
         """Take the changes (3, n_blocks) K of the block means of every fitted run; propose the next trial or end."""
         state, settings = self.state, self.state.settings
-        own = list(self.own)
+        moved = list(self.moved)
         step = self.trial - state.x
-        step[own] = 0.0
+        step[moved] = 0.0
         r = state.r - state.J @ step - self._whitened([of_run[0] for of_run in changes])
         off = float(np.linalg.norm(self.r - self.J @ (self.trial - self.y) - r))
         gain = state.misfit(self.r, self.y) - state.misfit(r, self.trial)
@@ -82,17 +82,17 @@ class _Trial:
             self.y, self.r = self.trial, r
             self.ended = off < settings.close_prediction or gain < settings.least_reduction
         else:
-            sd = state.prior[0][own]
-            self.reach = SHORTER * float(np.abs((self.trial - self.y)[own] / sd).max())
+            sd = state.prior[0][moved]
+            self.reach = SHORTER * float(np.abs((self.trial - self.y)[moved] / sd).max())
             self.ended = self.reach < settings.trust_smallest
         if not self.ended:
             self._propose()
 
     def _propose(self) -> None:
-        state, own, (sd, low, high) = self.state, list(self.own), self.state.prior
+        state, moved, (sd, low, high) = self.state, list(self.moved), self.state.prior
         low, high = np.maximum(low, state.x - state.radius * sd), np.minimum(high, state.x + state.radius * sd)
-        low[own] = np.maximum(low[own], self.y[own] - self.reach * sd[own])
-        high[own] = np.minimum(high[own], self.y[own] + self.reach * sd[own])
+        low[moved] = np.maximum(low[moved], self.y[moved] - self.reach * sd[moved])
+        high[moved] = np.minimum(high[moved], self.y[moved] + self.reach * sd[moved])
         self.trial = state.best_within(self.r + self.J @ self.y, self.J, low, high)
         expected = self.r - self.J @ (self.trial - self.y)
         gain = state.misfit(self.r, self.y) - state.misfit(expected, self.trial)
@@ -104,13 +104,13 @@ class _Trial:
         columns = []
         for number, of_run in zip(self.residuals.fitted, changes, strict=True):
             slopes, parts = (of_run[1:] - of_run[0]) / QUOTIENT, self.residuals.runs[number].parts()
-            table = np.zeros((of_run.shape[1], len(self.own)))
-            for column, (sensor, direction) in enumerate(self.own.values()):
+            table = np.zeros((of_run.shape[1], len(self.moved)))
+            for column, (sensor, direction) in enumerate(self.moved.values()):
                 rows = parts.get(names[sensor], slice(0))
                 table[rows, column] = slopes[direction, rows]
             columns.append(table)
         J = self.J.copy()
-        J[:, list(self.own)] = self._whitened(columns)
+        J[:, list(self.moved)] = self._whitened(columns)
         return J
 
     def _whitened(self, by_run: Sequence[Array]) -> Array:
@@ -128,8 +128,8 @@ def displaced_steps(
         if not active:
             break
         numbers = active[0].residuals.fitted
-        asked = [(number, trial.state.current_values, trial.shifts()) for trial in active for number in numbers]
-        answers = predictions.evaluations.of("displaced", asked)
+        questions = [(number, trial.state.current_values, trial.shifts()) for trial in active for number in numbers]
+        answers = predictions.evaluations.of("displaced", questions)
         for place, trial in enumerate(active):
             trial.answered(answers[place * len(numbers) : (place + 1) * len(numbers)])
     return [
