@@ -102,24 +102,8 @@ class RankedBeside(Brief):
         return fit.misfit < NEAR * fit.readings
 
     def score(self, members: Members) -> float:
-        """ln(prior) + ln evidence of a fitted set, less what it predicts the held-out runs worse than another set.
-
-        Counted is what goes beyond ``held_out_margin``, against the set with the highest ln(prior) + ln evidence of all
-        runs whose prediction of the held-out runs is usual. Effects in single runs, say, may imitate what acts in all
-        of them, but say nothing of another run.
-        """
-        behind = self._held_out - self.fits[members].held_out - self.problem.settings.held_out_margin
-        return self._of_fitted_runs(members) - (max(behind, 0.0) if math.isfinite(behind) else 0.0)
-
-    def _of_fitted_runs(self, members: Members) -> float:
+        """ln(prior) + ln evidence of a fitted set."""
         return self.problem.prior(members) + self.fits[members].log_evidence
-
-    @property
-    def _held_out(self) -> float:
-        """ln p of the held-out runs by the set that is best in all runs; NaN if there is none."""
-        usual = (members for members, fit in self.fits.items() if fit.held_out_p > USUAL_P)
-        best = max(usual, key=lambda part: self._of_fitted_runs(part) + self.fits[part].held_out, default=None)
-        return math.nan if best is None else self.fits[best].held_out
 
     @property
     def p_value(self) -> float:
