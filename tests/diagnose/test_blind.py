@@ -13,6 +13,7 @@ from tyrefem.diagnose.blind import rates as blind_rates
 from tyrefem.diagnose.blind.blind_case import KINDS, cases
 from tyrefem.diagnose.blind.rates import Blind, BlindTest, Rate
 from tyrefem.diagnose.blind.synthetic import backward
+from tyrefem.errors import InputError
 from tyrefem.reports import blind as blind_picture
 from tyrefem.simulation.rolling_tyre import RollingTyre
 
@@ -108,3 +109,9 @@ def test_finished_cases_are_not_run_again(tmp_path: Path, monkeypatch: pytest.Mo
     known = {number: _row("none", [], "no gap", []) for number in (0, 2)}
     blind_rates.run_blind(study, 3, 8, tmp_path, finished=known)
     assert ran[5:] == [1]
+    # Some cases alone.
+    result = blind_rates.run_blind(study, 3, 9, tmp_path, only=[2, 0])
+    assert ran[6:] == [0, 2]
+    assert len(result.rows) == 2
+    with pytest.raises(InputError, match="there is no case 3; the cases are 0 to 2"):
+        blind_rates.run_blind(study, 3, 9, tmp_path, only=[3])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from concurrent.futures import as_completed
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -139,7 +139,13 @@ def checked_model(name: str, field: str = "truth") -> str:
 #: Keywords of `run_blind`.
 BlindOptions = TypedDict(  # noqa: UP013
     "BlindOptions",
-    {"reduced": str, "mesh": Mapping[str, Any] | None, "truth": str, "finished": Mapping[int, Row]},
+    {
+        "reduced": str,
+        "mesh": Mapping[str, Any] | None,
+        "truth": str,
+        "finished": Mapping[int, Row],
+        "only": Collection[int],
+    },
     total=False,
 )
 
@@ -210,10 +216,11 @@ def run_blind(
     truth : model of the data. "ordinary" (default): the study's, with hidden causes, another mesh and time
         integration. "structural": also another strain energy, other gauges and speed laws of films (`OtherModel`).
     finished : rows of cases by number, of an earlier test with the same study, count and seed: not run again.
+    only : numbers of the cases to run; default: all. Finished ones count all the same.
 
     Raises
     ------
-    InputError : as `isolability`; or ``truth`` is none of these.
+    InputError : as `isolability`; ``truth`` is none of these; or ``only`` has a number that no case has.
     TypeError : a keyword that is none of these.
     """
     unknown = sorted(set(options) - set(BlindOptions.__annotations__))
@@ -229,7 +236,10 @@ def run_blind(
     rows: dict[int, Row] = dict(options.get("finished", {}))
     for path in store.glob(f"{tag}-*.json"):
         rows[int(path.stem.split("-")[1])] = json.loads(path.read_text(encoding="utf-8"))
-    left = [number for number in range(count) if number not in rows]
+    wanted = options.get("only", range(count))
+    if beyond := [number for number in wanted if not 0 <= number < count]:
+        raise InputError(f"there is no case {beyond[0]}; the cases are 0 to {count - 1}", field="only")
+    left = [number for number in range(count) if number in wanted and number not in rows]
     # The shared responses are kept until all cases are finished.
     progress = ProgressStore(folder / PROGRESS)
 
