@@ -11,7 +11,8 @@ import pytest
 from formula import Case, case, effect
 
 from tyrefem.diagnose.beside.discrepancy import ENERGY, NONE, Discrepancy, beside_law, discrepancies
-from tyrefem.diagnose.beside.ranked_beside import RankedBeside, robustness, under
+from tyrefem.diagnose.beside.ranked_beside import RankedBeside
+from tyrefem.diagnose.beside.ranking import robustness, under
 from tyrefem.diagnose.beside.robustness import Robustness
 from tyrefem.diagnose.fitting.criterion import LogEvidence
 from tyrefem.diagnose.fitting.fits import first_fits

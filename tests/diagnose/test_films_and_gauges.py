@@ -11,8 +11,10 @@ import pytest
 from formula import STATED, Case, case, effect
 
 import tyrefem as tf
+from tyrefem.diagnose.beside.best_fit import fit_beside
 from tyrefem.diagnose.beside.discrepancy import ENERGY, FURTHER, NONE, READINGS, Discrepancy, without
-from tyrefem.diagnose.beside.ranked_beside import RankedBeside, fit_beside, robustness
+from tyrefem.diagnose.beside.ranked_beside import RankedBeside
+from tyrefem.diagnose.beside.ranking import robustness
 from tyrefem.diagnose.beside.robustness import Robustness, UnderDiscrepancy
 from tyrefem.diagnose.fitting.criterion import LogEvidence
 from tyrefem.diagnose.fitting.fits import first_fits

@@ -12,7 +12,8 @@ from formula import Case, case, effect
 
 from tyrefem.diagnose.beside.discrepancy import ENERGY, HEAT, NONE, discrepancies, missing_heat_beside, missing_patches
 from tyrefem.diagnose.beside.free_heat import FreeHeat, free_heat
-from tyrefem.diagnose.beside.ranked_beside import RankedBeside, averaged
+from tyrefem.diagnose.beside.ranked_beside import RankedBeside
+from tyrefem.diagnose.beside.ranking import averaged
 from tyrefem.diagnose.beside.robustness import Robustness, UnderDiscrepancy
 from tyrefem.diagnose.fitting.criterion import LogEvidence
 from tyrefem.diagnose.fitting.exhaustive import Exhaustive

@@ -12,10 +12,12 @@ from tyrefem.brief import Brief
 from tyrefem.compare.experiment import ColumnNames, Table, experiments
 from tyrefem.conduction.linear_solver import one_thread
 from tyrefem.diagnose.amend import Change, amended, changes
+from tyrefem.diagnose.beside.best_fit import fit_beside
 from tyrefem.diagnose.beside.free_heat import free_heat
 from tyrefem.diagnose.beside.law_trials import LawTrial, law_trials
-from tyrefem.diagnose.beside.ranked_beside import beside_strain_laws, fit_beside, robustness
+from tyrefem.diagnose.beside.ranking import robustness
 from tyrefem.diagnose.beside.robustness import LEAST_P, Robustness
+from tyrefem.diagnose.beside.strain_laws import beside_strain_laws
 from tyrefem.diagnose.better_law import by_better_law
 from tyrefem.diagnose.data.residuals import Residuals, residuals_of
 from tyrefem.diagnose.data.runs import MeasuredDrive, measured_drive, with_noise_of_data

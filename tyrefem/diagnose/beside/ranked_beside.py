@@ -12,22 +12,13 @@ from scipy.special import expit
 
 from tyrefem.brief import Brief
 from tyrefem.diagnose.beside.discrepancy import (
-    ENERGY,
-    HEAT,
-    NONE,
-    READINGS,
     Discrepancy,
-    beside_law,
-    discrepancies,
-    without,
 )
-from tyrefem.diagnose.beside.robustness import Robustness, UnderDiscrepancy, shares
 from tyrefem.diagnose.data.residuals import Residuals
 from tyrefem.diagnose.fitting.fits import FittedSet, continued, first_fits, fitted_beside, linear_about, state_beside
 from tyrefem.diagnose.fitting.gauss_newton import FitState, initial_state
 from tyrefem.diagnose.fitting.selection import ScoredSet, SelectionProblem
 from tyrefem.diagnose.unknowns.candidates import Candidate, Members, separate
-from tyrefem.mechanics.strain_laws import strain_laws
 
 #: A set whose linear estimate is this far below the best is not fitted beside a discrepancy, nats.
 FAR = 60.0
@@ -35,12 +26,8 @@ FAR = 60.0
 STRAIN, RENEWED = 2.5, 2
 #: A strain law whose fits keep a misfit above this times the number of readings is not searched for further sets.
 NEAR = 10.0
-#: A model is probable enough for further fits from this probability on.
-PROBABLE = 1e-3
 #: Beside a discrepancy of this size noise explains the misfit, so that no larger one is tried.
 USUAL_P = 0.01
-#: Sizes of missing heat whose evidence is this far below the best one's do not count in the average, nats.
-NEGLIGIBLE = 12.0
 
 
 @dataclass(eq=False)
@@ -185,11 +172,11 @@ class RankedBeside(Brief):
         for member in best.members if parts else ():
             to_end.add(max((members for members in self.fits if member not in members), key=self.score, default=()))
             part = self.fits.get(tuple(each for each in self.problem.ordered(best.members) if each != member))
-            if not member.presence and (part is None or not _good(part)):
+            if not member.presence and (part is None or not is_good(part)):
                 ended.append(best.without([member]))
         # A part that begins where the best fit ends needs no second start.
         to_end -= {self.problem.ordered(fit.members) for fit in ended}
-        ended += [self.fits[members] for members in to_end if members in self.fits and not _good(self.fits[members])]
+        ended += [self.fits[members] for members in to_end if members in self.fits and not is_good(self.fits[members])]
         if not ended:
             return False
         self._take(continued(self.residuals, self.problem.predictions, ended, self.problem._count))
@@ -209,7 +196,7 @@ class RankedBeside(Brief):
                 continue
             for member in members:
                 part = tuple(each for each in members if each != member)
-                if (known := self.fits.get(part)) is None or _good(known):
+                if (known := self.fits.get(part)) is None or is_good(known):
                     continue
                 value = self.problem.prior(part) + _without(fit, member, self.residuals.log_det)
                 promising = value > max(self.score(part) + settings.near_score, top - settings.leading_score)
@@ -251,7 +238,7 @@ class RankedBeside(Brief):
 
     def _start(self, members: Members) -> FittedSet | None:
         """The best fit of a part of a set; else the best one that has more effects, without these."""
-        return _nearest({part: fit for part, fit in self.fits.items() if part != members}, members, self.score)
+        return nearest({part: fit for part, fit in self.fits.items() if part != members}, members, self.score)
 
     def _estimate(self) -> None:
         """Estimate sets with one effect more or less than a good fit, in the linear model about it."""
@@ -334,218 +321,12 @@ def _without(fit: FittedSet, member: Candidate, log_det: float) -> float:
     return evidence(part, log_det)
 
 
-def robustness(
-    problem: SelectionProblem, scored: Sequence[ScoredSet], *, certain: bool, explained: bool = True
-) -> Robustness:
-    """Sets of effects beside every discrepancy model.
-
-    The leading sets, and no effect, are fitted together with the model's unknowns; others are judged in the linear
-    model about these fits. Of the sizes of a discrepancy of the readings the most probable one counts; over those of
-    missing heat evidence is averaged.
-
-    Parameters
-    ----------
-    scored : the sets without a discrepancy. certain : True: improbable models get no further fits.
-    explained : False: no set explains the data, so the models matter for effects that act beside all that the data do
-        not exclude. Another strain energy is tried first, in full: of the models it is the likeliest to be wrong. The
-        others begin with two fits, no effect and the leading set, and go on if the data do not exclude them: then only
-        with sets that can change the probabilities of effects that act beside the models before.
-    """
-    settings = problem.settings
-    fits = {problem.ordered(entry.members): entry.fit for entry in scored if entry.fit is not None}
-    # Every model is judged by evidence, whatever the criterion of the search.
-    alone = sorted(
-        (
-            entry if entry.fit is None else entry._replace(score=problem.prior(entry.members) + entry.fit.log_evidence)
-            for entry in scored
-        ),
-        key=lambda entry: -entry.score,
-    )
-    ranked: dict[str, list[RankedBeside]] = {}
-    for name, sizes in _by_cost(problem, fits, explained=explained).items():
-        in_full = explained or name == ENERGY
-        before = () if in_full else _so_far(problem, alone, ranked).open(settings.named_probability)
-        tried = []
-        for discrepancy in sizes:
-            known = ranked.get(name, [])
-            if known and name != HEAT and not _further(known[0], discrepancy):
-                continue
-            beside = RankedBeside(problem, discrepancy, before)
-            beside.begin(fits, None if in_full else 1)
-            tried.append(beside)
-            if not known or name == HEAT:
-                ranked[name] = [*known, beside]
-            elif _total(beside.scored()) > _total(known[0].scored()):
-                ranked[name] = [beside]
-        if explained:
-            continue
-        counts = bool(before) and name in {model.name for model in _so_far(problem, alone, ranked).counted}
-        for beside in ranked[name] if in_full or counts else ():
-            if not in_full:
-                beside.begin(fits)
-            beside.further()
-        if in_full or counts:
-            ranked[name] = _without_errors(ranked[name], tried)
-    share = (1 - settings.right_model) / max(len(ranked), 1)
-
-    def result() -> Robustness:
-        models = [under(Discrepancy(NONE, 0.0), problem.residuals, alone), *map(_under, ranked.values())]
-        scores = [
-            math.log(settings.right_model) + _total(alone),
-            *(math.log(share) + _score(sizes) for sizes in ranked.values()),
-        ]
-        models = [
-            replace(model, probability=probability) for model, probability in zip(models, shares(scores), strict=True)
-        ]
-        ordered = tuple(sorted(models, key=lambda model: -model.probability))
-        return Robustness(ordered, log_evidence=float(np.logaddexp.reduce(scores)))
-
-    first = result()
-    if not explained:
-        return _with_held_out(problem, first)
-    probable = {model.name for model in first.models if model.probability > PROBABLE}
-    unfinished = [beside for name, sizes in ranked.items() if name in probable or not certain for beside in sizes]
-    for beside in unfinished:
-        beside.further()
-    return _with_held_out(problem, result() if unfinished else first)
-
-
-def _without_errors(chosen: list[RankedBeside], tried: Sequence[RankedBeside]) -> list[RankedBeside]:
-    """A discrepancy with errors of the readings, or the best one without them if its sets explain the data better.
-
-    Before the search the errors stand in for an effect that no set had yet.
-    """
-    alone = [beside for beside in tried if not beside.discrepancy.size]
-    if not alone or not all(beside.discrepancy.size for beside in chosen):
-        return chosen
-    best = max(alone, key=lambda beside: _total(beside.scored()))
-    best.further()
-    return [best] if _total(best.scored()) > _total(chosen[0].scored()) else chosen
-
-
-def _with_held_out(problem: SelectionProblem, robust: Robustness) -> Robustness:
-    """With ln p of the held-out runs beside the most probable model without an effect that it allows for by itself.
-
-    For each such effect that acts with the probability of a name beside every model, the leading sets are ranked again
-    where neither the model nor a set has it.
-    """
-    leading = robust.models[0]
-    candidates = robust.robust(leading.allowed, problem.settings.named_probability)
-    if leading.discrepancy is None or leading.residuals is None or not candidates or not problem.residuals.held_out:
-        return robust
-    held_out = {}
-    for member in candidates:
-        left = without(leading.discrepancy, member.amplitudes)
-        here = replace(leading.residuals, shared_error=left.shared_error)
-        beside = RankedBeside(problem, left, left_out=(member,), _here=here)
-        beside.begin(leading.fits)
-        beside.further()
-        held_out[member.key] = max(fit.held_out for fit in beside.fits.values())
-    return replace(robust, models=(replace(leading, held_out_without=held_out), *robust.models[1:]))
-
-
-def _score(sizes: Sequence[RankedBeside]) -> float:
-    """ln evidence of a discrepancy of several sizes, over all sets with their priors."""
-    _, _, rows = averaged(sizes)
-    return _total(rows)
-
-
-def _under(sizes: Sequence[RankedBeside]) -> UnderDiscrepancy:
-    """The sets beside a discrepancy of several sizes, and the effects that it allows for by itself."""
-    model = under(*averaged(sizes))
-    beside = next(each for each in sizes if each.discrepancy.size == model.size)
-    allowed = beside.allowed()
-    named = {**model.named, **{each.key: probability for each, (probability, _, _) in allowed.items()}}
-    values = {each.amplitudes[0].key: (x, sd) for each, (_, x, sd) in allowed.items()}
-    return replace(
-        model,
-        named=dict(sorted(named.items(), key=lambda item: -item[1])),
-        values={**model.values, **values},
-        discrepancy=beside.discrepancy,
-        allowed=tuple(allowed),
-    )
-
-
-def _so_far(
-    problem: SelectionProblem, alone: Sequence[ScoredSet], ranked: Mapping[str, Sequence[RankedBeside]]
-) -> Robustness:
-    """The models so far, equally probable before the data; ``alone``: the sets without one."""
-    scores = [_total(alone), *map(_score, ranked.values())]
-    models = [under(Discrepancy(NONE, 0.0), problem.residuals, alone), *map(_under, ranked.values())]
-    likely = (replace(model, probability=share) for model, share in zip(models, shares(scores), strict=True))
-    return Robustness(tuple(sorted(likely, key=lambda model: -model.probability)))
-
-
-def _further(known: RankedBeside, discrepancy: Discrepancy) -> bool:
-    """Whether to try a discrepancy beside the best one of its name: with more that differs, or with errors of the
-    readings."""
-    same_width = discrepancy.width == known.discrepancy.width
-    if known.p_value > USUAL_P:
-        return known.strained and not same_width and discrepancy.size == known.discrepancy.size
-    return discrepancy.size == 0.0 or same_width
-
-
-def beside_strain_laws(problem: SelectionProblem, robust: Robustness, fits: Sequence[FittedSet]) -> Robustness:
-    """The sets of some fits, and those with one effect more or less, ranked again beside every other strain law.
-
-    The fits are without a discrepancy. A law that the study cannot run, or that needs further inputs, is not tried; one
-    that presses the tyre on the road does so in linear motion.
-    """
-    residuals, evaluations = problem.residuals, problem.predictions.evaluations
-    largest = max([fit.members for fit in fits], key=len)
-    named = problem.ordered(largest)
-    numbers = range(len(residuals.runs))
-    tried, untried = [], []
-    for name, law in strain_laws().items():
-        if name == residuals.study.card.mechanics.strain or not law.compared:
-            continue
-        answers = evaluations.of("change_by_law", [(number, name) for number in numbers])
-        if not all(np.isfinite(change).all() for change in answers):
-            untried.append(name)
-            continue
-        beside = RankedBeside(problem, beside_law(residuals, name, answers), named)
-        beside.begin({problem.ordered(fit.members): fit for fit in fits})
-        if beside.near:
-            beside.further()
-        law_sets = under(beside.discrepancy, beside.residuals, beside.scored())
-        tried.append(replace(law_sets, probability=math.nan))
-    return replace(robust, laws=tuple(tried), untried=tuple(untried))
-
-
-def fit_beside(problem: SelectionProblem, model: UnderDiscrepancy, fit: FittedSet) -> FittedSet:
-    """The fit of a set beside a model; ``fit``: its fit without a discrepancy.
-
-    It is continued with new sensitivities if it has not converged and noise does not explain its misfit. Effects that
-    the model allows for by itself are fitted as effects, and not allowed for a second time.
-    """
-    known = model.fits.get(problem.ordered(fit.members))
-    if model.residuals is None or (known is not None and _good(known)):
-        return known or fit
-    members = tuple(member for member in fit.members if member in model.allowed)
-    others = problem.ordered(tuple(member for member in fit.members if member not in members))
-    start = _nearest(model.fits, others, lambda part: model.fits[part].log_evidence)
-    here, joining, predictions = model.residuals, members, problem.predictions
-    if members and model.discrepancy is not None:
-        left = without(model.discrepancy, [member.amplitudes[0] for member in members])
-        here = replace(here, shared_error=left.shared_error)
-    if start is None or not set(others) <= set(start.members):
-        start, joining = fit, ()
-    first = known
-    if first is None:
-        (first,) = fitted_beside(predictions, [(start, here)], problem._count, joining)
-    if _good(first) or not first.worth_continuing:
-        return first
-    (further,) = continued(here, predictions, [first], problem._count)
-    return max(first, further, key=lambda each: each.log_evidence)
-
-
-def _good(fit: FittedSet) -> bool:
+def is_good(fit: FittedSet) -> bool:
+    """Whether a fit got to its best point, or noise explains what it leaves."""
     return fit.converged or fit.p_value > USUAL_P
 
 
-def _nearest(
-    fits: Mapping[Members, FittedSet], members: Members, score: Callable[[Members], float]
-) -> FittedSet | None:
+def nearest(fits: Mapping[Members, FittedSet], members: Members, score: Callable[[Members], float]) -> FittedSet | None:
     """The fit of a set, else the best one of a part of it, else the best one with further effects, without these."""
     if members in fits:
         return fits[members]
@@ -558,73 +339,3 @@ def _nearest(
         return None
     whole = fits[max(wholes, key=score)]
     return whole.without([each for each in whole.members if each not in members])
-
-
-def _by_cost(
-    problem: SelectionProblem, fits: Mapping[Members, FittedSet], *, explained: bool
-) -> dict[str, list[Discrepancy]]:
-    """The models by name with their sizes, those without further unknowns first, or last if no set explains the data.
-
-    Of correlated readings there is only the size that explains the fits best; of missing heat those that come near it.
-    """
-    every = sorted(discrepancies(problem.residuals), key=lambda each: bool(each.nuisance) == explained)
-    models: dict[str, list[Discrepancy]] = {}
-    for each in every:
-        models.setdefault(each.name, []).append(each)
-
-    def best(discrepancy: Discrepancy) -> float:
-        residuals = RankedBeside(problem, discrepancy).residuals
-        return max(
-            problem.prior(members) + evidence(state_beside(residuals, fit), residuals.log_det)
-            for members, fit in fits.items()
-        )
-
-    for name in {HEAT, READINGS} & set(models):
-        values = [best(discrepancy) for discrepancy in models[name]]
-        least = max(values) - (NEGLIGIBLE if name == HEAT else 0.0)
-        models[name] = [size for size, value in zip(models[name], values, strict=True) if value >= least]
-    return models
-
-
-def averaged(sizes: Sequence[RankedBeside]) -> tuple[Discrepancy, Residuals, list[ScoredSet]]:
-    """Sets beside one discrepancy of several equally probable sizes: their scores by the average of the evidences.
-
-    Sizes that are left out count as no evidence. Discrepancy, residuals and fits are those of the most probable size.
-    """
-    leading = max(sizes, key=lambda beside: _total(beside.scored()))
-    if leading.discrepancy.name != HEAT:
-        return leading.discrepancy, leading.residuals, leading.scored()
-    count = math.log(len(leading.problem.settings.heat_widths))
-    scores: dict[Members, list[float]] = {}
-    for beside in sizes:
-        for row in beside.scored():
-            scores.setdefault(row.members, []).append(row.score)
-    rows = [
-        ScoredSet(float(np.logaddexp.reduce(values)) - count, members, leading.fits.get(members))
-        for members, values in scores.items()
-    ]
-    return leading.discrepancy, leading.residuals, sorted(rows, key=lambda row: -row.score)
-
-
-def _total(scored: Sequence[ScoredSet]) -> float:
-    """ln of the sum over the sets."""
-    return float(np.logaddexp.reduce([entry.score for entry in scored]))
-
-
-def under(model: Discrepancy, residuals: Residuals, scored: Sequence[ScoredSet]) -> UnderDiscrepancy:
-    """The sets beside a model, still without the model's probability."""
-    total = _total(scored)
-    named: dict[str, float] = {}
-    values: dict[str, tuple[float, float]] = {}
-    for entry in scored:
-        for member in entry.members:
-            named[member.key] = named.get(member.key, 0.0) + math.exp(entry.score - total)
-            if entry.fit is not None:
-                values |= {
-                    unknown.key: (entry.fit.values[unknown], entry.fit.sd[unknown])
-                    for unknown in member.unknowns
-                    if unknown in entry.fit.values and unknown.key not in values
-                }
-    named = dict(sorted(named.items(), key=lambda item: -item[1]))
-    fits = {entry.members: entry.fit for entry in scored if entry.fit is not None}
-    return UnderDiscrepancy(model.name, model.size, model.words, 0.0, named, scored[0].members, values, fits, residuals)
