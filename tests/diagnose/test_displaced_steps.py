@@ -130,6 +130,14 @@ def test_a_step_that_slopes_lead_astray_ends_where_the_readings_are(owner: tf.St
     np.testing.assert_allclose(taken.next_jacobian[:, 0], state.J[:, 0])
 
 
+def test_without_a_simulation_at_the_point_a_step_follows_the_slopes(owner: tf.Study) -> None:
+    place = deeper(owner)
+    curve = Curve(place)
+    state, residuals = state_of(curve, series(curve.reading(0.05, 1.3e-3), dict(place.choice)["sensor"]))
+    curve.reading = lambda heat, depth: np.full(N, np.nan)  # type: ignore[method-assign]
+    assert displaced_steps([residuals], cast(Any, SimpleNamespace(evaluations=curve)), [state]) == [state]
+
+
 def test_a_step_without_moving_sensors_asks_nothing(owner: tf.Study) -> None:
     curve = Curve(deeper(owner))
     state, residuals = state_of(curve, series(np.zeros(N), "crown"))

@@ -29,7 +29,7 @@ class _Trial:
 
     ``moved``: numbers of the displacements among the unknowns -> number of the sensor, number of the direction.
     ``y``, ``r``, ``J``: best point so far, residuals and linear model there. ``reach``: box about it for displacements,
-    prior sd.
+    prior sd. ``failed``: there is no simulation at the state's point.
     """
 
     state: FitState
@@ -41,6 +41,7 @@ class _Trial:
     trial: Array
     reach: float = np.inf
     ended: bool = False
+    failed: bool = False
 
     @classmethod
     def of(cls, state: FitState, residuals: Residuals) -> _Trial | None:
@@ -70,6 +71,9 @@ class _Trial:
 
     def answered(self, changes: Sequence[Array]) -> None:
         """Take the changes (3, n_blocks) K of the block means of every fitted run; propose the next trial or end."""
+        if not all(np.isfinite(of_run).all() for of_run in changes):
+            self.failed = self.ended = True
+            return
         state, settings = self.state, self.state.settings
         moved = list(self.moved)
         step = self.trial - state.x
@@ -133,6 +137,6 @@ def displaced_steps(
         for place, trial in enumerate(active):
             trial.answered(answers[place * len(numbers) : (place + 1) * len(numbers)])
     return [
-        state if trial is None else state.expecting(trial.y, trial.r, trial.J)
+        state if trial is None or trial.failed else state.expecting(trial.y, trial.r, trial.J)
         for state, trial in zip(states, trials, strict=True)
     ]

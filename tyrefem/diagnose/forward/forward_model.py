@@ -283,9 +283,13 @@ class ForwardModel(Brief):
     def displaced(self, number: int, values: Values, shifts: Array) -> Array:
         """(n_shifts, n_blocks) K: change of the block means if sensors are moved at the temperatures of a simulation.
 
-        ``shifts`` (n_shifts, n_sensors, 2) m: along the meridian and in depth; sensors as in the study.
+        ``shifts`` (n_shifts, n_sensors, 2) m: along the meridian and in depth; sensors as in the study. NaN for an
+        impossible tyre.
         """
-        here = self._simulated(number, values)
+        try:
+            here = self._simulated(number, values)
+        except InputError:
+            return np.full((len(shifts), self.drives[number].size), np.nan)
         readings = here.displaced(np.concatenate([np.zeros((1, *shifts.shape[1:])), shifts]))
         parts = [
             each.sampled(here.grid, change - change[:, :1])
