@@ -1,4 +1,4 @@
-"""Beside a discrepancy a rival whose own fit ended early starts again from a leading fit that has one effect more."""
+"""Beside a discrepancy: rivals whose own fits ended early, and effects that a fit does not ask for."""
 
 from __future__ import annotations
 
@@ -9,12 +9,13 @@ import numpy as np
 import pytest
 from formula import STATED, Array, case, effect
 
+from tyrefem.diagnose.beside.best_fit import not_asked_for
 from tyrefem.diagnose.beside.discrepancy import NONE, Discrepancy
 from tyrefem.diagnose.beside.ranked_beside import RankedBeside
 from tyrefem.diagnose.fitting.criterion import LogEvidence
 from tyrefem.diagnose.fitting.selection import SelectionProblem
 from tyrefem.diagnose.settings import DiagnosisSettings
-from tyrefem.diagnose.unknowns.candidates import SetPrior
+from tyrefem.diagnose.unknowns.candidates import Members, SetPrior
 
 N = 80
 T = np.linspace(0.05, 1.0, N)
@@ -55,3 +56,12 @@ def test_a_rival_that_ended_at_its_best_point_stays_as_it_is() -> None:
     fits = [problem.settled_fit(fit) for fit in problem.fitted([(), (STRONG,), (RIVAL,), (STRONG, SPARE)], {})]
     beside = RankedBeside(problem, Discrepancy(NONE, 0.0), fits={problem.ordered(fit.members): fit for fit in fits})
     assert beside._hidden_rivals() == []
+
+
+@pytest.mark.parametrize(("spare", "idle"), [(0.0, (SPARE,)), (12.0, ())])
+def test_an_effect_that_a_fit_does_not_ask_for_is_told(spare: float, idle: Members) -> None:
+    made = case(law, law({"strong": 5.0, "spare": spare}) + np.random.default_rng(3).normal(size=N), CANDIDATES)
+    prior = SetPrior(CANDIDATES, 0.5)
+    problem = SelectionProblem(made.residuals, made.predictions, CANDIDATES, prior, LogEvidence())
+    (fit,) = problem.fitted([(STRONG, SPARE)], {})
+    assert not_asked_for(problem, problem.settled_fit(fit)) == idle

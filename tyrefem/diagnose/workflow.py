@@ -12,7 +12,7 @@ from tyrefem.brief import Brief
 from tyrefem.compare.experiment import ColumnNames, Table, experiments
 from tyrefem.conduction.linear_solver import one_thread
 from tyrefem.diagnose.amend import Change, amended, changes
-from tyrefem.diagnose.beside.best_fit import fit_beside
+from tyrefem.diagnose.beside.best_fit import fit_beside, not_asked_for
 from tyrefem.diagnose.beside.free_heat import free_heat
 from tyrefem.diagnose.beside.law_trials import LawTrial, law_trials
 from tyrefem.diagnose.beside.ranking import robustness
@@ -402,6 +402,10 @@ def rank(
         sets = dict.fromkeys(problem.ordered(each) for each in ((), *((member,) for member in partly), partly))
         robust = beside_strain_laws(beside, robust, [fit_of(members) for members in sets])
         revision = beside_discrepancies(judgement, robust, settings, law_replaced=law_replaced, heat=heat)
+    if len(revision.members) > 1 and set(revision.members) & set(robust.models[0].allowed):
+        together = fit_beside(beside, robust.models[0], fit_of(problem.ordered(revision.members)))
+        idle = tuple(each for each in not_asked_for(beside, together) if each not in robust.models[0].allowed)
+        revision = beside_discrepancies(judgement, robust, settings, law_replaced=law_replaced, heat=heat, idle=idle)
     judgement = judgement.revised(revision.verdict, revision.reasons, revision.doubts)
     partly = revision.members
     if not partly:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 from tyrefem.diagnose.beside.discrepancy import without
-from tyrefem.diagnose.beside.ranked_beside import is_good, nearest
+from tyrefem.diagnose.beside.ranked_beside import evidence, evidence_without, is_good, nearest
 from tyrefem.diagnose.beside.robustness import UnderDiscrepancy
 from tyrefem.diagnose.fitting.fits import FittedSet, continued, fitted_beside
 from tyrefem.diagnose.fitting.selection import SelectionProblem
+from tyrefem.diagnose.unknowns.candidates import Members
 
 
 def fit_beside(problem: SelectionProblem, model: UnderDiscrepancy, fit: FittedSet) -> FittedSet:
@@ -36,3 +38,18 @@ def fit_beside(problem: SelectionProblem, model: UnderDiscrepancy, fit: FittedSe
         return first
     (further,) = continued(here, predictions, [first], problem._count)
     return max(first, further, key=lambda each: each.log_evidence)
+
+
+def not_asked_for(problem: SelectionProblem, fit: FittedSet) -> Members:
+    """Effects of a fit that are not needed in the linear model about it, with the probability of a name.
+
+    Where speed laws of films are fitted as effects, they bend; another effect may have stood in for that.
+    """
+    least = problem.settings.named_probability
+    whole = problem.prior(problem.ordered(fit.members)) + evidence(fit.state, 0.0)
+    idle = []
+    for member in fit.members:
+        part = problem.ordered(each for each in fit.members if each != member)
+        if whole - problem.prior(part) - evidence_without(fit, member, 0.0) < math.log(least / (1 - least)):
+            idle.append(member)
+    return tuple(idle)

@@ -198,7 +198,7 @@ class RankedBeside(Brief):
                 part = tuple(each for each in members if each != member)
                 if (known := self.fits.get(part)) is None or is_good(known):
                     continue
-                value = self.problem.prior(part) + _without(fit, member, self.residuals.log_det)
+                value = self.problem.prior(part) + evidence_without(fit, member, self.residuals.log_det)
                 promising = value > max(self.score(part) + settings.near_score, top - settings.leading_score)
                 if promising and value > starts.get(part, (-math.inf,))[0]:
                     starts[part] = value, fit.without([member])
@@ -248,7 +248,7 @@ class RankedBeside(Brief):
                 continue
             for member in members:
                 part = tuple(each for each in members if each != member)
-                value = self.problem.prior(part) + _without(fit, member, self.residuals.log_det)
+                value = self.problem.prior(part) + evidence_without(fit, member, self.residuals.log_det)
                 self._better(part, value)
             if len(members) < settings.largest:
                 self._extend(members, fit)
@@ -303,7 +303,7 @@ def evidence(state: FitState, log_det: float) -> float:
     return state.posterior.log_evidence - float(data @ data) / 2 - log_det
 
 
-def _without(fit: FittedSet, member: Candidate, log_det: float) -> float:
+def evidence_without(fit: FittedSet, member: Candidate, log_det: float) -> float:
     """ln evidence of a fitted set without a member, in the linear model about the fit."""
     kept = [place for place, unknown in enumerate(fit.unknowns) if unknown not in member.unknowns]
     if member.presence or len(kept) == len(fit.unknowns):
