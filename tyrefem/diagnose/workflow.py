@@ -402,6 +402,7 @@ def rank(
         sets = dict.fromkeys(problem.ordered(each) for each in ((), *((member,) for member in partly), partly))
         robust = beside_strain_laws(beside, robust, [fit_of(members) for members in sets])
         revision = beside_discrepancies(judgement, robust, settings, law_replaced=law_replaced, heat=heat)
+    together: FittedSet | None = None
     if len(revision.members) > 1 and set(revision.members) & set(robust.models[0].allowed):
         together = fit_beside(beside, robust.models[0], fit_of(problem.ordered(revision.members)))
         idle = tuple(each for each in not_asked_for(beside, together) if each not in robust.models[0].allowed)
@@ -415,7 +416,9 @@ def rank(
             of_effects = {member: every[member] for member in sure}
         return Ranking(judgement, best_fit, null, missing, fit_of, movements_of(best_fit), robust, of_effects)
     alone = fit_of(problem.ordered(partly))
-    best_fit = fit_beside(beside, robust.models[0], alone)
+    if together is None or set(together.members) != set(partly):
+        together = fit_beside(beside, robust.models[0], alone)
+    best_fit = together
     over_time = heat_over_time(residuals, predictions.evaluations, alone, fitting)
     missing = with_course(missing_heat(residuals, origin.patches, alone), over_time)
     moved = movements(residuals, predictions, best_fit)

@@ -19,8 +19,8 @@ from tyrefem.diagnose.forward.fixed_step import QUOTIENT
 from tyrefem.diagnose.forward.multifidelity import Predictions
 
 Array = NDArray[np.float64]
-#: Trials of one step at most; a trial that fails shortens the next one to this share.
-ROUNDS, SHORTER = 6, 0.4
+#: Trials of one step at most.
+ROUNDS = 6
 
 
 @dataclass
@@ -87,7 +87,7 @@ class _Trial:
             self.ended = off < settings.close_prediction or gain < settings.least_reduction
         else:
             sd = state.prior[0][moved]
-            self.reach = SHORTER * float(np.abs((self.trial - self.y)[moved] / sd).max())
+            self.reach = settings.trust_shorter * float(np.abs((self.trial - self.y)[moved] / sd).max())
             self.ended = self.reach < settings.trust_smallest
         if not self.ended:
             self._propose()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -72,18 +73,15 @@ class Predictions(Brief):
     reduced: int = 0
     simulated: int = 0
     given_up: bool = False
-    _simulating: Predictions | None = field(default=None, repr=False)
 
-    @property
+    @functools.cached_property
     def simulating(self) -> Predictions:
         """The same predictions by simulations only; they count among these.
 
         With fifty unknowns and more a simulation and its tangents take no longer than a reduced model, and the
         temperatures at the sensors are known there.
         """
-        if self._simulating is None:
-            self._simulating = Predictions(self.evaluations)
-        return self._simulating
+        return Predictions(self.evaluations)
 
     @property
     def settings(self) -> DiagnosisSettings:
