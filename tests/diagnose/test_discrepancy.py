@@ -108,6 +108,16 @@ def test_a_strain_energy_that_is_wrong_by_a_factor_is_followed(hot: float) -> No
         assert low < hot < high
 
 
+def test_an_effect_that_the_fit_of_all_does_not_ask_for_is_told_but_not_named() -> None:
+    judgement, members, robust = diagnosed(measured(hot=25.0, off=0.25))
+    assert members == (HOT,)
+    again = replace(judgement, verdict=UNEXPLAINED)
+    assert beside_discrepancies(again, robust, SETTINGS, idle=(COLD,)).members == (HOT,)
+    revision = beside_discrepancies(again, robust, SETTINGS, idle=(HOT,))
+    assert (revision.verdict, revision.members) == (UNEXPLAINED, ())
+    assert any(reason.startswith("hot is not named: beside the films'") for reason in revision.reasons)
+
+
 def test_an_effect_without_which_held_out_runs_are_predicted_better_is_told_but_not_named() -> None:
     judgement, members, robust = diagnosed(measured(hot=25.0, off=0.25))
     assert members == (HOT,)
