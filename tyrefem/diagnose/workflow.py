@@ -6,6 +6,7 @@ import math
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any, Unpack
 
 from tyrefem.brief import Brief
@@ -23,10 +24,9 @@ from tyrefem.diagnose.data.residuals import Residuals, residuals_of
 from tyrefem.diagnose.data.runs import MeasuredDrive, measured_drive, with_noise_of_data
 from tyrefem.diagnose.data.sensitivities import responses, responses_like, sensitivities, shared_responses, unknowns_of
 from tyrefem.diagnose.diagnosis import DiagnosisData
-from tyrefem.diagnose.fitting.criterion import Criterion
 from tyrefem.diagnose.fitting.fits import FittedSet, first_fits, fitted_beside
 from tyrefem.diagnose.fitting.materiality import Movements, movements
-from tyrefem.diagnose.fitting.selection import SelectionProblem
+from tyrefem.diagnose.fitting.selection import ScoredSet, SelectionProblem
 from tyrefem.diagnose.fitting.support import Support, supports
 from tyrefem.diagnose.forward.effort import check_effort
 from tyrefem.diagnose.forward.evaluations import Evaluations, evaluating, worker_models
@@ -34,7 +34,8 @@ from tyrefem.diagnose.forward.forward_model import DriveResponse, ForwardModel
 from tyrefem.diagnose.forward.multifidelity import Predictions
 from tyrefem.diagnose.forward.strain_law_study import by_law
 from tyrefem.diagnose.heat.missing_heat import UnknownHeat, missing_heat, missing_heat_fitted, with_course
-from tyrefem.diagnose.heat.over_time import heat_over_time
+from tyrefem.diagnose.heat.over_time import HeatOverTime, heat_over_time
+from tyrefem.diagnose.heat.unknown_origin import UnknownOrigin
 from tyrefem.diagnose.law.search import HeatLaw, heat_law
 from tyrefem.diagnose.law.signatures import law_signatures
 from tyrefem.diagnose.layout.conformal import read_calibration
@@ -309,12 +310,69 @@ class Ranking(Brief):
     supports: Mapping[Candidate, Support] = field(default_factory=dict)
 
 
+@dataclass(frozen=True, eq=False)
+class Searched(Brief):
+    """Sets of effects that a look has searched and fitted.
+
+    Parameters
+    ----------
+    problem : the search's problem. origin : heat of unknown origin as an alternative. scored : the sets, best first.
+    fits : set -> its fit; further ones join. tick : called with what is being done.
+    """
+
+    problem: SelectionProblem
+    origin: UnknownOrigin
+    scored: Sequence[ScoredSet]
+    fits: dict[Members, FittedSet]
+    tick: Callable[[str], None]
+    _sizes: dict[Members, Movements] = field(default_factory=dict)
+
+    @property
+    def null(self) -> FittedSet:
+        """The fit of no effect."""
+        return self.fits[()]
+
+    def fit_of(self, members: Members) -> FittedSet:
+        """The fit of a set, made if there is none."""
+        if members not in self.fits:
+            (first,) = first_fits(self.problem.residuals, self.problem.predictions, [members])
+            self.fits[members] = self.problem.settled_fit(first)
+        return self.fits[members]
+
+    def movements_of(self, fit: FittedSet) -> Movements:
+        """What each effect of a fit moves at the sensors."""
+        if fit.members not in self._sizes:
+            self._sizes[fit.members] = movements(self.problem.residuals, self.problem.predictions, fit)
+        return self._sizes[fit.members]
+
+    def over_time(self, fit: FittedSet) -> HeatOverTime:
+        """Heat of unknown origin over time beside a fit."""
+        return heat_over_time(self.problem.residuals, self.problem.predictions.evaluations, fit, self.fitting_heat)
+
+    def fitting_heat(self) -> None:
+        """Tell that heat of unknown origin is fitted."""
+        self.tick("fitting heat of unknown origin")
+
+    def missing_heat(self) -> UnknownHeat:
+        """Heat of unknown origin, fitted with the full model if it may be more probable than every set."""
+        residuals, predictions, best = self.problem.residuals, self.problem.predictions, self.scored[0]
+        missing = self.origin.of(self.null)
+        doubtful = best.fit is None or bool(rejection("", best.fit, residuals.settings))
+        ahead = self.origin.score(self.null, missing) > best.score - residuals.settings.missing_near
+        if doubtful or ahead:
+            missing = missing_heat_fitted(residuals, predictions, self.origin.patches, self.null, self.fitting_heat)
+        # Several effects may imitate heat that acts during a part of a run only.
+        if doubtful or ahead or len(best.members) > 1:
+            missing = with_course(missing, self.over_time(self.null))
+        return missing
+
+
 def rank(
     residuals: Residuals,
     predictions: Predictions,
     candidates: Members,
     method: Method,
-    tick: Callable[[str], None] | None = None,
+    tick: Callable[[str], None],
     *,
     law_replaced: bool = False,
 ) -> Ranking:
@@ -322,9 +380,31 @@ def rank(
 
     ``law_replaced``: see `beside_discrepancies`.
     """
+    searched = _searched(residuals, predictions, candidates, method, tick)
+    missing = searched.missing_heat()
+    judgement = _judged(searched, missing)
+    ahead = judgement.best
+    best = ahead.fit or (searched.null if ahead.outside else searched.fit_of(ahead.members))
+    ranking = Ranking(judgement, best, searched.null, missing, searched.fit_of, searched.movements_of(best))
+    if judgement.verdict == NO_GAP:
+        return ranking
+    ranking, beside = _beside_discrepancies(searched, ranking, law_replaced=law_replaced)
+    if beside is not None:
+        return _partly_identified(searched, ranking, beside)
+    judgement = ranking.judgement
+    if judgement.verdict in (IDENTIFIED, CONFOUNDED) and (sure := certain_members(judgement, residuals.settings)):
+        every = supports(residuals, best, searched.fits, candidates, searched.problem.prior)
+        ranking = replace(ranking, supports={member: every[member] for member in sure})
+    return ranking
+
+
+def _searched(
+    residuals: Residuals, predictions: Predictions, candidates: Members, method: Method, tick: Callable[[str], None]
+) -> Searched:
+    """Sets of effects without a discrepancy, fitted."""
     settings, expected = residuals.settings, residuals.study.card.diagnosis.effects_expected
     prior = SetPrior(candidates, expected, settings.size_shares, settings.odd_run_share)
-    origin = _UnknownOrigin(residuals, predictions, method.criterion, math.log(expected * settings.outside_share))
+    origin = UnknownOrigin(residuals, method.criterion, math.log(expected * settings.outside_share))
     problem = SelectionProblem(
         residuals,
         predictions,
@@ -336,97 +416,89 @@ def rank(
     )
     scored = problem.settled(method.strategy.search(problem))
     fits = {problem.ordered(entry.fit.members): entry.fit for entry in scored if entry.fit is not None}
-    null = fits[()]
+    return Searched(problem, origin, scored, fits, tick)
 
-    def fit_of(members: Members) -> FittedSet:
-        if members not in fits:
-            (first,) = first_fits(residuals, predictions, [members])
-            fits[members] = problem.settled_fit(first)
-        return fits[members]
 
-    missing, best = origin.of(null), scored[0]
-    doubtful = best.fit is None or bool(rejection("", best.fit, settings))
-    doubtful = doubtful or origin.score(null, missing) > best.score - settings.missing_near
-
-    def fitting() -> None:
-        if tick:
-            tick("fitting heat of unknown origin")
-
-    if doubtful:
-        missing = missing_heat_fitted(residuals, predictions, origin.patches, null, fitting)
-    # Several effects may imitate heat that acts during a part of a run only.
-    if doubtful or len(best.members) > 1:
-        missing = with_course(missing, heat_over_time(residuals, predictions.evaluations, null, fitting))
-    sizes: dict[Members, Movements] = {}
-
-    def movements_of(fit: FittedSet) -> Movements:
-        if fit.members not in sizes:
-            sizes[fit.members] = movements(residuals, predictions, fit)
-        return sizes[fit.members]
-
+def _judged(searched: Searched, missing: UnknownHeat) -> Judgement:
+    """The verdict without a discrepancy; sets with effects that move readings by less than the floor are left out."""
+    residuals = searched.problem.residuals
     floor = residuals.study.card.diagnosis.discrepancy
-    ranked_sets = ranked(scored, origin.score(null, missing), missing.held_out)
-    ranking, left_out = without_immaterial(ranked_sets, movements_of, floor)
+    ranked_sets = ranked(searched.scored, searched.origin.score(searched.null, missing), missing.held_out)
+    ranking, left_out = without_immaterial(ranked_sets, searched.movements_of, floor)
     if left_out and not ranking[0].outside:
         # The set without them was no leading one, so its fit may be a rough one.
-        fit = problem.settled_fit(ranking[0].fit or fit_of(ranking[0].members))
+        fit = searched.problem.settled_fit(ranking[0].fit or searched.fit_of(ranking[0].members))
         ranking = (replace(ranking[0], fit=fit), *ranking[1:])
-    judgement = judge(ranking, fit_of, settings)
+    judgement = judge(ranking, searched.fit_of, residuals.settings)
     probable = inclusion(ranked_sets)
     small = tuple(
         f"{member.key} is not named: it {move.words}; the discrepancy is {floor:g} K"
         for member, move in left_out.items()
-        if probable[member.key] >= settings.alone_probability
+        if probable[member.key] >= residuals.settings.alone_probability
     )
-    judgement = replace(judgement, reasons=(*judgement.reasons, *small))
-    ahead = judgement.best
-    best_fit = ahead.fit or (null if ahead.outside else fit_of(ahead.members))
-    if judgement.verdict == NO_GAP:
-        return Ranking(judgement, best_fit, null, missing, fit_of, movements_of(best_fit))
-    beside = replace(problem, predictions=predictions.simulating)
+    return replace(judgement, reasons=(*judgement.reasons, *small))
+
+
+@dataclass(frozen=True, eq=False)
+class Partly(Brief):
+    """Effects that act whatever else is wrong.
+
+    ``problem``: by simulations only. ``members``: the effects. ``robust``: sets beside the discrepancies.
+    ``together``: the fit of the effects beside the most probable discrepancy; None: not made.
+    """
+
+    problem: SelectionProblem
+    members: Members
+    robust: Robustness
+    together: FittedSet | None
+
+
+def _beside_discrepancies(searched: Searched, ranking: Ranking, *, law_replaced: bool) -> tuple[Ranking, Partly | None]:
+    """The ranking revised beside every discrepancy; effects that act whatever else is wrong, None without any."""
+    settings, judgement = searched.problem.settings, ranking.judgement
+    problem = replace(searched.problem, predictions=searched.problem.predictions.simulating)
     robust = robustness(
-        beside,
-        scored,
+        problem,
+        searched.scored,
         certain=judgement.verdict == IDENTIFIED and not law_replaced,
         explained=judgement.verdict != UNEXPLAINED,
     )
-    revision, heat = beside_discrepancies(judgement, robust, settings, law_replaced=law_replaced), None
+    revised = partial(beside_discrepancies, judgement, settings=settings, law_replaced=law_replaced)
+    revision, heat = revised(robust), None
     if revision.members:
         leading = robust.models[0]
-        heat = free_heat(beside, leading.size, leading.log_evidence(revision.members))
+        heat = free_heat(problem, leading.size, leading.log_evidence(revision.members))
         robust = replace(robust, heat=heat)
-        revision = beside_discrepancies(judgement, robust, settings, law_replaced=law_replaced, heat=heat)
-    if partly := revision.members:
-        if tick:
-            tick("trying other strain laws")
-        sets = dict.fromkeys(problem.ordered(each) for each in ((), *((member,) for member in partly), partly))
-        robust = beside_strain_laws(beside, robust, [fit_of(members) for members in sets])
-        revision = beside_discrepancies(judgement, robust, settings, law_replaced=law_replaced, heat=heat)
+        revision = revised(robust, heat=heat)
+    if members := revision.members:
+        searched.tick("trying other strain laws")
+        sets = dict.fromkeys(problem.ordered(each) for each in ((), *((member,) for member in members), members))
+        robust = beside_strain_laws(problem, robust, [searched.fit_of(each) for each in sets])
+        revision = revised(robust, heat=heat)
     together: FittedSet | None = None
-    if len(revision.members) > 1 and set(revision.members) & set(robust.models[0].allowed):
-        together = fit_beside(beside, robust.models[0], fit_of(problem.ordered(revision.members)))
-        idle = tuple(each for each in not_asked_for(beside, together) if each not in robust.models[0].allowed)
-        revision = beside_discrepancies(judgement, robust, settings, law_replaced=law_replaced, heat=heat, idle=idle)
+    allowed = robust.models[0].allowed
+    if len(revision.members) > 1 and set(revision.members) & set(allowed):
+        together = fit_beside(problem, robust.models[0], searched.fit_of(problem.ordered(revision.members)))
+        idle = tuple(each for each in not_asked_for(problem, together) if each not in allowed)
+        revision = revised(robust, heat=heat, idle=idle)
     judgement = judgement.revised(revision.verdict, revision.reasons, revision.doubts)
-    partly = revision.members
-    if not partly:
-        of_effects: Mapping[Candidate, Support] = {}
-        if judgement.verdict in (IDENTIFIED, CONFOUNDED) and (sure := certain_members(judgement, settings)):
-            every = supports(residuals, best_fit, fits, candidates, prior)
-            of_effects = {member: every[member] for member in sure}
-        return Ranking(judgement, best_fit, null, missing, fit_of, movements_of(best_fit), robust, of_effects)
-    alone = fit_of(problem.ordered(partly))
-    if together is None or set(together.members) != set(partly):
-        together = fit_beside(beside, robust.models[0], alone)
-    best_fit = together
-    over_time = heat_over_time(residuals, predictions.evaluations, alone, fitting)
-    missing = with_course(missing_heat(residuals, origin.patches, alone), over_time)
-    moved = movements(residuals, predictions, best_fit)
-    leading = robust.models[0]
+    ranking = replace(ranking, judgement=judgement, robustness=robust)
+    return ranking, Partly(problem, revision.members, robust, together) if revision.members else None
+
+
+def _partly_identified(searched: Searched, ranking: Ranking, beside: Partly) -> Ranking:
+    """The ranking with the fit of the effects that act whatever else is wrong, and the heat beside them."""
+    problem, leading = beside.problem, beside.robust.models[0]
+    residuals = problem.residuals
+    alone, best = searched.fit_of(problem.ordered(beside.members)), beside.together
+    if best is None or set(best.members) != set(beside.members):
+        best = fit_beside(problem, leading, alone)
+    missing = with_course(missing_heat(residuals, searched.origin.patches, alone), searched.over_time(alone))
     # Fits beside a model that allows for a member by itself do not tell what speaks for it.
-    comparable = {} if set(best_fit.members) & set(leading.allowed) else leading.fits
-    of_effects = supports(leading.residuals or residuals, best_fit, comparable, candidates, prior)
-    return Ranking(judgement, best_fit, null, missing, fit_of, moved, robust, of_effects)
+    comparable = {} if set(best.members) & set(leading.allowed) else leading.fits
+    of_effects = supports(leading.residuals or residuals, best, comparable, problem.candidates, problem.prior)
+    moved = movements(residuals, searched.problem.predictions, best)
+    return replace(ranking, best=best, missing=missing, movements=moved, supports=of_effects)
 
 
 def allowed_error(ranking: Ranking, settings: DiagnosisSettings) -> float:
@@ -461,22 +533,6 @@ def _simulated_best(ranking: Ranking, predictions: Predictions) -> Ranking | Non
         return ranking
     (fit,) = fitted_beside(predictions, [(ranking.best, beside)])
     return replace(ranking, best=fit) if fit.p_value > LEAST_P else None
-
-
-class _UnknownOrigin:
-    """Heat of unknown origin as an alternative to all sets of the catalogue; ``prior``: ln of its prior probability."""
-
-    def __init__(self, residuals: Residuals, predictions: Predictions, criterion: Criterion, prior: float) -> None:
-        self.residuals, self.criterion, self.prior = residuals, criterion, prior
-        self.patches = patches(residuals.study, residuals.settings)
-
-    def of(self, null: FittedSet) -> UnknownHeat:
-        """The heat, estimated in the linear model about the fit of no effect."""
-        return missing_heat(self.residuals, self.patches, null)
-
-    def score(self, null: FittedSet, heat: UnknownHeat) -> float:
-        """ln(prior) + criterion of no effect + gain of ln evidence by the heat."""
-        return self.prior + self.criterion.of_fit(null) + (heat.log_evidence - null.log_evidence)
 
 
 class _SimulationCounter:
