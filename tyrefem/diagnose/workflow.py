@@ -17,14 +17,14 @@ from tyrefem.diagnose.beside.best_fit import fit_beside, not_asked_for
 from tyrefem.diagnose.beside.free_heat import free_heat
 from tyrefem.diagnose.beside.law_trials import LawTrial, law_trials
 from tyrefem.diagnose.beside.ranking import robustness
-from tyrefem.diagnose.beside.robustness import LEAST_P, Robustness
+from tyrefem.diagnose.beside.robustness import Robustness
 from tyrefem.diagnose.beside.strain_laws import beside_strain_laws
 from tyrefem.diagnose.better_law import by_better_law
 from tyrefem.diagnose.data.residuals import Residuals, residuals_of
 from tyrefem.diagnose.data.runs import MeasuredDrive, measured_drive, with_noise_of_data
 from tyrefem.diagnose.data.sensitivities import responses, responses_like, sensitivities, shared_responses, unknowns_of
 from tyrefem.diagnose.diagnosis import DiagnosisData
-from tyrefem.diagnose.fitting.fits import FittedSet, first_fits, fitted_beside
+from tyrefem.diagnose.fitting.fits import FittedSet, first_fits
 from tyrefem.diagnose.fitting.materiality import Movements, movements
 from tyrefem.diagnose.fitting.selection import ScoredSet, SelectionProblem
 from tyrefem.diagnose.fitting.support import Support, supports
@@ -211,20 +211,9 @@ def _look(
             evaluations, [response.modes for response in known] if settings.reduced == "auto" else ()
         )
 
-        def ranked_with(predictions: Predictions) -> Ranking:
-            tick = _SimulationCounter(work.tick)
-            return rank(residuals, predictions, candidates, method, tick, law_replaced=law_replaced)
-
-        ranking = ranked_with(predictions)
-        error = predictions.error_at(ranking.best.members, ranking.best.values)
-        confirmed: Ranking | None = ranking if error <= allowed_error(ranking, settings) else None
-        if confirmed is not None and error > settings.reduced_allowed:
-            confirmed = _simulated_best(ranking, replace(predictions, modes=()))
-        if confirmed is None:
-            work.tick("reduced models are not accurate at the best fit: repeating with simulations")
-            predictions = replace(predictions, modes=(), given_up=True)
-            confirmed = ranked_with(predictions)
-        ranking = beside_other_models(confirmed)
+        tick = _SimulationCounter(work.tick)
+        ranking = rank(residuals, predictions, candidates, method, tick, law_replaced=law_replaced)
+        ranking = beside_other_models(ranking)
         values, sd, missing_unknowns = _missing_unknowns(residuals, ranking)
         change = changes(residuals, values, sd, missing_unknowns)
         work.tick("running the amended study")
@@ -380,22 +369,34 @@ def rank(
 
     ``law_replaced``: see `beside_discrepancies`.
     """
-    searched = _searched(residuals, predictions, candidates, method, tick)
-    missing = searched.missing_heat()
-    judgement = _judged(searched, missing)
-    ahead = judgement.best
-    best = ahead.fit or (searched.null if ahead.outside else searched.fit_of(ahead.members))
-    ranking = Ranking(judgement, best, searched.null, missing, searched.fit_of, searched.movements_of(best))
-    if judgement.verdict == NO_GAP:
+    searched, ranking = _without_discrepancy(residuals, predictions, candidates, method, tick)
+    if predictions.error_at(ranking.best.members, ranking.best.values) > allowed_error(ranking, residuals.settings):
+        tick("reduced models are not accurate at the best fit: repeating with simulations")
+        predictions.give_up()
+        searched, ranking = _without_discrepancy(residuals, predictions, candidates, method, tick)
+    if ranking.judgement.verdict == NO_GAP:
         return ranking
     ranking, beside = _beside_discrepancies(searched, ranking, law_replaced=law_replaced)
     if beside is not None:
         return _partly_identified(searched, ranking, beside)
     judgement = ranking.judgement
     if judgement.verdict in (IDENTIFIED, CONFOUNDED) and (sure := certain_members(judgement, residuals.settings)):
-        every = supports(residuals, best, searched.fits, candidates, searched.problem.prior)
+        every = supports(residuals, ranking.best, searched.fits, candidates, searched.problem.prior)
         ranking = replace(ranking, supports={member: every[member] for member in sure})
     return ranking
+
+
+def _without_discrepancy(
+    residuals: Residuals, predictions: Predictions, candidates: Members, method: Method, tick: Callable[[str], None]
+) -> tuple[Searched, Ranking]:
+    """The search, and the ranking before what else may be wrong."""
+    searched = _searched(residuals, predictions, candidates, method, tick)
+    missing = searched.missing_heat()
+    judgement = _judged(searched, missing)
+    ahead = judgement.best
+    best = ahead.fit or (searched.null if ahead.outside else searched.fit_of(ahead.members))
+    moved = searched.movements_of(best)
+    return searched, Ranking(judgement, best, searched.null, missing, searched.fit_of, moved)
 
 
 def _searched(
@@ -505,14 +506,11 @@ def allowed_error(ranking: Ranking, settings: DiagnosisSettings) -> float:
     """Largest error of the reduced models at the best fit, as a whitened norm, that cannot change the verdict.
 
     An error e shifts the ln evidence by e sqrt(misfit / readings) times a standard normal number. Missing heat is often
-    ahead by hundreds of nats. Effects that are named beside every discrepancy model bear the error of another one;
-    their fit is then simulated. Other verdicts need the usual accuracy.
+    ahead by hundreds of nats. Other verdicts need the usual accuracy. Beside a discrepancy all points are simulated.
     """
     judgement = ranking.judgement
-    if judgement.verdict not in (UNEXPLAINED, PARTLY) or not judgement.best.outside:
+    if judgement.verdict != UNEXPLAINED or not judgement.best.outside:
         return settings.reduced_allowed
-    if judgement.verdict == PARTLY:
-        return settings.reduced_allowed_far
     lead = judgement.best.score - judgement.ranking[1].score
     shift = math.sqrt(max(ranking.best.misfit / ranking.best.readings, 1.0))
     far = min(lead / (settings.reduced_shift * shift), settings.reduced_allowed_far)
@@ -524,15 +522,6 @@ def beside_other_models(ranking: Ranking) -> Ranking:
     if ranking.judgement.verdict != IDENTIFIED or ranking.robustness is None:
         return ranking
     return replace(ranking, best=replace(ranking.best, spread=ranking.robustness.spread(ranking.best)))
-
-
-def _simulated_best(ranking: Ranking, predictions: Predictions) -> Ranking | None:
-    """The ranking with the fit of named effects continued by simulations; None if it no longer explains the data."""
-    robust = ranking.robustness
-    if ranking.judgement.verdict != PARTLY or robust is None or (beside := robust.models[0].residuals) is None:
-        return ranking
-    (fit,) = fitted_beside(predictions, [(ranking.best, beside)])
-    return replace(ranking, best=fit) if fit.p_value > LEAST_P else None
 
 
 class _SimulationCounter:

@@ -120,6 +120,10 @@ class Predictions(Brief):
         tables |= zip(left, self.evaluations.of("jacobian", [(i, *queries[k][1:]) for k, i in left], tick), strict=True)
         return [[tables[k, i] for i in numbers] for k in range(len(queries))]
 
+    def give_up(self) -> None:
+        """Use no reduced models from here on: they failed at the best fit."""
+        self.modes, self.given_up = (), True
+
     def error_at(self, members: Members, values: Values) -> float:
         """Largest difference from simulations, as a whitened norm, where reduced models gave the readings.
 
