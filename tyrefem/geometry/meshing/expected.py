@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import functools
+
 import numpy as np
 
 from tyrefem.geometry.meshing.mapped import ASPECT, grid_lines
@@ -16,6 +18,7 @@ QUADRATIC = 4
 COUNTED = 4e6
 
 
+@functools.lru_cache(maxsize=64)
 def expected_nodes(section: Section, size: float, *, mesher: str = "mapped", through: int = 1) -> float:
     """Number of element corners: exact lines for the structured mesh, within a factor of two for gmsh.
 

@@ -34,6 +34,9 @@ REMEMBERED = 10
 #: Number of tyres that a process keeps: the study's tyre, and the last one with another stiffness.
 TYRES = 2
 
+#: The latest mesh: tyres of other stiffness share it.
+_MESHES: Cache[TyreMesh] = Cache(size=1)
+
 
 def element_size(section: Section, size: float) -> float:
     """Size of nine-node elements, m, for a study's mesh of a size, m: 2.5 times, at least twice that.
@@ -62,8 +65,11 @@ def mechanical_mesh(study: StudyData, *, large: bool | None = None) -> TyreMesh:
     mechanics = study.card.mechanics
     in_large = mechanics.strain == "fem" and mechanics.motion == "large" if large is None else large
     _check_memory(study, mesher, size, in_large)
+    section = study.section
     try:
-        return meshing.build(study.section, mesher=mesher, size=size, cell="quad", through=1)
+        return _MESHES.get(
+            (section, mesher, size), lambda: meshing.build(section, mesher=mesher, size=size, cell="quad", through=1)
+        )
     except InputError as error:
         if as_given:
             raise error.within(field="mesh", file=study.file) from None
