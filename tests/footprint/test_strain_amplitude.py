@@ -73,6 +73,15 @@ def test_amplitude_is_half_the_diameter_of_the_path() -> None:
     assert shear_amplitude(strain) == pytest.approx([0.05], rel=1e-9)
 
 
+def test_one_side_of_a_mirrored_cycle_gives_the_amplitude_of_the_whole(cycle: StrainHarmonics) -> None:
+    side = np.pi * np.linspace(0, 1, 25) ** 2
+    whole = np.concatenate([-side[:0:-1], side])
+    exact = shear_amplitude(cycle.strain(whole))
+    assert cycle.mirrored
+    np.testing.assert_allclose(shear_amplitude(cycle.strain(side), mirrored=True), exact, rtol=1e-9)
+    assert np.abs(shear_amplitude(cycle.strain(side)) / exact - 1).max() > 0.05
+
+
 def test_a_cycle_of_simple_shear_loses_pi_g2_times_the_loss_modulus(cycle: StrainHarmonics) -> None:
     region = "sidewall"
     members = cycle.elements.mesh.subdomains[region]

@@ -20,23 +20,34 @@ ANGLES, CHUNK = 32, 128
 WEIGHTS = np.array([2.0, 2.0, 2.0, 1.0, 1.0, 1.0])
 
 
-def shear_amplitude(strain: Array) -> Array:
+def shear_amplitude(strain: Array, *, mirrored: bool = False) -> Array:
     """(...) half the largest distance between two states of a cycle (6, ..., n), as equivalent shear strain.
 
     The distance of two states is sqrt(2 d':d'), d' the deviator of their difference: simple shear between -g and g has
-    the amplitude g. Order rr, zz, tt, rz, rt, zt; engineering shears.
+    the amplitude g. Order rr, zz, tt, rz, rt, zt; engineering shears. ``mirrored``: the states are one side of a cycle,
+    and the other side has the opposite rt and zt.
 
     >>> swing = np.zeros((6, 1, 3))
     >>> swing[3, 0] = [-0.02, 0.0, 0.02]
     >>> shear_amplitude(swing).tolist()
     [0.02]
+    >>> one_side = np.zeros((6, 1, 2))
+    >>> one_side[5, 0] = [0.0, 0.02]
+    >>> shear_amplitude(one_side).tolist(), shear_amplitude(one_side, mirrored=True).tolist()
+    ([0.01], [0.02])
     """
     states = np.array(strain, dtype=float)
     states[:3] -= states[:3].mean(axis=0)
     states = np.moveaxis(states, 0, -1) * np.sqrt(WEIGHTS)
-    states -= states[..., :1, :]
-    squares = (states**2).sum(axis=-1)
-    distances = squares[..., :, None] + squares[..., None, :] - 2 * states @ states.swapaxes(-1, -2)
+    if not mirrored:
+        states -= states[..., :1, :]
+        squares = (states**2).sum(axis=-1)
+        distances = squares[..., :, None] + squares[..., None, :] - 2 * states @ states.swapaxes(-1, -2)
+    else:
+        even, odd = states[..., :4] - states[..., :1, :4], states[..., 4:]
+        squares = (even**2).sum(axis=-1) + (odd**2).sum(axis=-1)
+        products = even @ even.swapaxes(-1, -2) - np.abs(odd @ odd.swapaxes(-1, -2))
+        distances = squares[..., :, None] + squares[..., None, :] - 2 * products
     return np.asarray(np.sqrt(np.maximum(distances.max(axis=(-1, -2)), 0.0)) / 2)
 
 
@@ -55,11 +66,15 @@ class StrainAmplitude(Brief):
     @functools.cached_property
     def amplitudes(self) -> Array:
         """(n_elements, n_points) shear strain amplitude over a revolution."""
-        one_side = np.pi * np.linspace(0, 1, ANGLES + 1) ** 2
-        angles = np.concatenate([-one_side[:0:-1], one_side[:-1]])
+        angles = np.pi * np.linspace(0, 1, ANGLES + 1) ** 2
+        mirrored = self.cycle.mirrored
+        if not mirrored:
+            angles = np.concatenate([-angles[:0:-1], angles[:-1]])
         count = len(self.cycle.elements.radii)
         chunks = [np.arange(start, min(start + CHUNK, count)) for start in range(0, count, CHUNK)]
-        return np.concatenate([shear_amplitude(self.cycle.strain(angles, chunk)) for chunk in chunks])
+        return np.concatenate(
+            [shear_amplitude(self.cycle.strain(angles, chunk), mirrored=mirrored) for chunk in chunks]
+        )
 
     @functools.cached_property
     def lossiness(self) -> Array:

@@ -51,6 +51,11 @@ class StrainHarmonics:
         """Shape functions of the section."""
         return self.footprint.pressing.harmonics.elements
 
+    @property
+    def mirrored(self) -> bool:
+        """Whether the side t < 0 has the strains of t > 0 with opposite rt and zt."""
+        return True
+
     @functools.cached_property
     def amplitudes(self) -> Array:
         """(harmonics + 1, 6, n_elements, n_points) e_n; of Green's strain for a balanced footprint."""
@@ -140,11 +145,8 @@ class StrainHarmonics:
 
     def _products(self, moduli: Array) -> Array:
         storage = np.moveaxis(moduli, (0, 1), (-2, -1))
-        products = np.zeros((len(self.amplitudes), *self.elements.radii.shape))
-        for n, amplitude in enumerate(self.amplitudes):
-            e = np.moveaxis(amplitude, 0, -1)[..., None]
-            products[n] = ((storage @ e) * e).sum(axis=(-2, -1))
-        return products
+        strains = np.moveaxis(self.amplitudes, (0, 1), (-1, -2))
+        return np.asarray(np.moveaxis(((storage @ strains) * strains).sum(axis=-2), -1, 0))
 
     def largest_energy(self, count: int = 180) -> Array:
         """(n_elements, n_points) U = 1/2 de : C' : de, largest over the angle, J/m3.

@@ -87,6 +87,11 @@ class LaggingStrains(StrainHarmonics):
         assert isinstance(self.footprint, LaggingFootprint)
         return self.footprint.lagging
 
+    @property
+    def mirrored(self) -> bool:
+        """False: the strains lag."""
+        return False
+
     @functools.cached_property
     def amplitudes(self) -> Any:
         """(harmonics + 1, 6, n_elements, n_points) complex E_n."""
