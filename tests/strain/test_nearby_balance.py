@@ -57,6 +57,8 @@ def test_a_tyre_of_other_loss_needs_no_search(bias_cycle: FiniteElements) -> Non
     footprint = nearby_balance(Balance(Pressing(lossy)), start, load=bias_cycle.case.load)
     assert footprint is not None
     assert footprint.balanced is start.balanced
+    assert footprint.amplitudes is start.amplitudes
+    assert footprint.stiffness == start.stiffness
     assert footprint.pressing.state is lossy
     stiffer = replace(start.pressing.state, stress=1.02 * start.pressing.state.stress)
     moved = nearby_balance(Balance(Pressing(stiffer)), start, load=bias_cycle.case.load)

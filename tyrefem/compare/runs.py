@@ -34,7 +34,7 @@ Key = tuple[str, str | None]
 #: Number of fields of a full run for training.
 FIELDS = 30
 #: Time of a footprint that starts from a nearby one, over that from the free tyre.
-NEARBY = 0.3
+NEARBY = 0.2
 #: Names under which runs are kept: full runs with training data, full runs, and reduced runs.
 TRAINING, FULL, REDUCED = "taught", "full", "reduced"
 

@@ -252,19 +252,37 @@ class Harmonics(Brief):
         ------
         InputError : harmonic n has no stiffness at the others.
         """
-        from scipy.sparse.linalg import splu
-
-        order = self._last(dofs)
-        try:
-            factor = splu(self.stiffness(n)[order][:, order].tocsc(), permc_spec="NATURAL", **SYMMETRIC)
-        except RuntimeError:
-            raise InputError(f"harmonic {n:g} has no stiffness: nothing holds the body") from None
-        k = len(dofs)
+        factor, k = self.factor_with_last(n, dofs)[1], len(dofs)
         condensed = (factor.L[-k:, -k:] @ factor.U[-k:, -k:]).toarray()
         return (condensed + condensed.T) / 2
 
+    def factor_with_last(self, n: int, dofs: Indices, like: Harmonics | None = None) -> tuple[Indices, Any]:
+        """Order of the free degrees of freedom with ``dofs`` last, and the SuperLU factors of K_n in it; ``like``: a
+        tyre with the same mesh, whose order serves.
+
+        Raises
+        ------
+        InputError : harmonic n has no stiffness.
+        """
+        from scipy.sparse.linalg import splu
+
+        order = (like or self)._last(dofs)
+        try:
+            return order, splu(self.stiffness(n)[order][:, order].tocsc(), permc_spec="NATURAL", **SYMMETRIC)
+        except RuntimeError:
+            raise InputError(f"harmonic {n:g} has no stiffness: nothing holds the body") from None
+
     def compliance(self, n: int, dofs: Indices) -> Array:
         """(k, k) displacements of some free degrees of freedom under unit loads on them, m per N per radian.
+
+        Raises
+        ------
+        InputError : harmonic n has no positive stiffness at these degrees of freedom.
+        """
+        return self.compliance_of(n, self.factor_with_last(n, dofs), len(dofs))
+
+    def compliance_of(self, n: int, factor: tuple[Indices, Any], k: int) -> Array:
+        """`compliance` from `factor_with_last` of k degrees of freedom.
 
         With these last, the last blocks of the factors are those of the Schur complement: no right-hand side is solved.
 
@@ -273,19 +291,14 @@ class Harmonics(Brief):
         InputError : harmonic n has no positive stiffness at these degrees of freedom.
         """
         from scipy.linalg import LinAlgError, cho_factor, cho_solve
-        from scipy.sparse.linalg import splu
 
-        order = self._last(dofs)
-        try:
-            factor = splu(self.stiffness(n)[order][:, order].tocsc(), permc_spec="NATURAL", **SYMMETRIC)
-        except RuntimeError:
-            raise InputError(f"harmonic {n:g} has no stiffness: nothing holds the body") from None
-        k, upper = len(dofs), factor.U
+        order, lu = factor
+        upper = lu.U
         self.negative_pivots[n] = int((upper.diagonal() < 0).sum())
         if self.negative_pivots[n] and n < min(self.buckling_place, default=n + 1):
             self.buckling_place.clear()
             self.buckling_place[n] = self._largest(order, upper)
-        condensed = (factor.L[-k:, -k:] @ upper[-k:, -k:]).toarray()
+        condensed = (lu.L[-k:, -k:] @ upper[-k:, -k:]).toarray()
         try:
             return np.asarray(cho_solve(cho_factor((condensed + condensed.T) / 2), np.eye(k)))
         except LinAlgError:

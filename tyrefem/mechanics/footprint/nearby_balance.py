@@ -7,34 +7,47 @@ from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tyrefem.cache import Cache
 from tyrefem.mechanics.footprint.contact import Pressing
 from tyrefem.mechanics.footprint.footprint import Footprint
 from tyrefem.mechanics.footprint.harmonic_balance import ON_THE_WAY, Balance
 from tyrefem.mechanics.footprint.large_motion import DeflectedState, LargeMotion
+from tyrefem.mechanics.footprint.nearby_tread import NearbyPressing, ShortWaves
 from tyrefem.mechanics.footprint.taut_tyre import TautTyre, tautened
 from tyrefem.mechanics.solid.body import Prestressed
 from tyrefem.mechanics.solid.finite_law import FiniteLaw
 
+Array = NDArray[np.float64]
 #: Largest ratio of load or deflection to that of the start: its number of harmonics serves no further.
 FAR = 2.0
 #: Small motions of the latest footprint from which others started, by its tyre on the road.
 _LEADING: Cache[TautTyre] = Cache(size=1)
+#: Short waves of the latest such footprint.
+_WAVES: Cache[ShortWaves] = Cache(size=1)
 
 
 @dataclass(frozen=True, eq=False)
 class NearbyFootprint(Footprint):
     """A footprint that started from a nearby one. Its stiffness is computed when it is used: strain cycles do without.
 
-    ``law`` : stress, as in `Balance`.
+    ``law`` : stress, as in `Balance`. ``like`` : a footprint with the same motion.
     """
 
     law: FiniteLaw | None = None
+    like: Footprint | None = None
+
+    @functools.cached_property
+    def amplitudes(self) -> Array:
+        """(harmonics + 1, n_dofs) displacement amplitudes of the whole section, m."""
+        return super().amplitudes if self.like is None else self.like.amplitudes
 
     @functools.cached_property
     def stiffness(self) -> float:
         """d load / d deflection at this deflection, N/m."""
+        if self.like is not None:
+            return self.like.stiffness
         assert self.balanced is not None
         assert isinstance(self.pressing, Pressing)
         moment = DeflectedState(self.deflection, self.balanced, self.grid, self.forces, self.load, self.rate)
@@ -62,7 +75,7 @@ def nearby_balance(
     >>> footprint.load
     300.0
     """
-    pressing = balance.pressing
+    pressing = NearbyPressing(balance.pressing.state, balance.pressing.road, waves=_waves(near))
     if near.balanced is None or near.balanced.shape[1] != pressing.harmonics.elements.n_dofs:
         return None
     if len(near.grid.tread.nodes) != len(pressing.tread.nodes):
@@ -73,7 +86,7 @@ def nearby_balance(
     unmoved = wanted is None or abs(wanted - solved) <= balance.tolerance * solved
     alike = balance.law is None and near.pressing.road == pressing.road
     if unmoved and alike and _as_stiff(near.pressing.state, pressing.state):
-        return replace(near, pressing=pressing)
+        return NearbyFootprint(**{**_fields(near), "pressing": pressing, "like": near})
     motion = LargeMotion(pressing, balance.law, balance.before_rim, _leading(near))
     moment = DeflectedState(near.deflection, near.balanced, near.grid, near.forces, near.load, near.rate)
     moment = motion.refined(moment, moment.harmonics, near.harmonics)
@@ -96,6 +109,11 @@ def _fields(footprint: Footprint) -> dict[str, Any]:
 def _leading(near: Footprint) -> TautTyre:
     """The tyre of a footprint in small motions: it leads the search for all footprints that start from this one."""
     return _LEADING.get(near.pressing, lambda: TautTyre(near.pressing))
+
+
+def _waves(near: Footprint) -> ShortWaves:
+    """The short waves of a footprint: those of all footprints that start from it are computed from them."""
+    return _WAVES.get(near, lambda: ShortWaves(near))
 
 
 def _as_stiff(state: Prestressed, other: Prestressed) -> bool:

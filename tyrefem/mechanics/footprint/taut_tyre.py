@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.cache import Cache
 from tyrefem.errors import InputError
 from tyrefem.mechanics.footprint.elements import COMPONENTS
 from tyrefem.mechanics.footprint.harmonics import SYMMETRIC, Harmonics
@@ -59,6 +60,9 @@ class TautTyre:
     """
 
     tyre: TyreOnRoad
+    #: `compliance` of all points of possible contact by their directions and numbers of harmonics: tyres that this one
+    #: leads share it.
+    compliances: Cache[Array] = field(default_factory=lambda: Cache(size=2), init=False, repr=False)
     _factors: dict[int, Any] = field(default_factory=dict, init=False, repr=False)
     _under_tread: dict[int, tuple[Any, Array]] = field(default_factory=dict, init=False, repr=False)
 

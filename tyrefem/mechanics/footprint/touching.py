@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.cache import Content
 from tyrefem.mechanics.footprint.complementarity import contact_forces
 from tyrefem.mechanics.footprint.elements import COMPONENTS
 from tyrefem.mechanics.footprint.grid import ContactGrid
@@ -73,7 +74,8 @@ class Touching:
         contact set."""
         if self.alike is not None:
             return self.alike.compliance
-        return self.tyre.compliance(self.loads, self.rows) + self.tail
+        places = Content.of(self.direction), self.highest, self.grid.harmonics
+        return self.tyre.compliances.get(places, lambda: self.tyre.compliance(self.loads, self.rows)) + self.tail
 
     def into(self, motion: Array) -> Array:
         """(k,) displacement into the road, m, for amplitudes (highest + 1, n_dofs)."""
