@@ -13,6 +13,8 @@ from tyrefem.compare import ComparisonData
 from tyrefem.compare.reduced_inputs import ReducedInputSettings
 from tyrefem.errors import InputError
 from tyrefem.processes import processes
+from tyrefem.reduced.pod import modes
+from tyrefem.reduced.training import ReducedFineness
 
 #: Coarse in space and time.
 QUICK = {"mesh.size": "9 mm", "mesh.element": "P1", "numerics.tolerance": "0.05 delta_degC", "output.every": "20 s"}
@@ -103,3 +105,14 @@ def test_one_model_for_all_drives_and_in_processes(quick: Study, full: Compariso
 def test_other_words_are_refused(quick: Study) -> None:
     with pytest.raises(InputError, match="never"):
         quick.compare(reduced="always")
+
+
+def test_a_pattern_of_one_input_in_a_hundred_has_a_mode() -> None:
+    """The rms over the fields of all inputs is a tenth of what one of a hundred adds: a cut there hides it."""
+    settings = ReducedInputSettings()
+    fields = np.ones((300, 64)) * np.linspace(20.0, 80.0, 300)[:, None]
+    pattern = settings.least_tolerance / 20 * np.where(np.arange(64) % 2, 1.0, -1.0)
+    fields[:3] += pattern
+    fineness = ReducedFineness.of(settings.modes_share * settings.least_tolerance)
+    V = modes(fields, np.ones(64), fineness.modes_tolerance, settings.most_modes)
+    assert np.abs(pattern - V @ (V.T @ pattern) / 64).max() < 0.01 * np.abs(pattern).max()

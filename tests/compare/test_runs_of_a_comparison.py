@@ -156,6 +156,8 @@ def test_a_long_drive_is_followed_from_its_first_readings() -> None:
             made.begin()
             return ReducedInputRuns(made, settings).solve()
 
-    assert certificate(ReducedInputSettings()).worst < 0.016
+    # So few modes have no room for what nobody taught.
+    few = 0.25
+    assert certificate(ReducedInputSettings(modes_share=few)).worst < 0.016
     with pytest.raises(NotReducibleError, match="full runs are off by"):
-        certificate(ReducedInputSettings(early=np.inf))
+        certificate(ReducedInputSettings(early=np.inf, modes_share=few))

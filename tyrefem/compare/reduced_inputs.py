@@ -37,10 +37,13 @@ class ReducedInputSettings:
     trials: int = 2
     #: Least number of correction rounds before the first certificate; it is at least the number of drives.
     rounds: int = 2
-    #: Error of the modes, as a share of the tolerance.
-    modes_share: float = 0.25
-    #: Largest number of modes; many inputs, each with an early and a late change, need many modes.
-    most_modes: int = 200
+    #: Error of the modes, as a share of the tolerance. It is the rms over the snapshots of all inputs: the pattern of
+    #: a single input at one drive, a hundredth of them, may be off by ten times as much.
+    modes_share: float = 0.0625
+    #: Largest numbers of modes of temperature and of heat source; many inputs, each with an early and a late change,
+    #: and a strain cycle of their own at every drive, need many modes.
+    most_modes: int = 300
+    most_sources: int = 500
     #: Least number of changed runs for which a reduced model is made.
     least_runs: int = 12
     #: The first field at which a phase is corrected lies within this time from its start, s.
@@ -195,10 +198,9 @@ class ReducedInputRuns:
 
     @property
     def _fineness(self) -> ReducedFineness:
-        most = self.settings.most_modes
-        return replace(
-            ReducedFineness.of(self.settings.modes_share * self.tolerance), most_modes=most, most_sources=most
-        )
+        settings = self.settings
+        fineness = ReducedFineness.of(settings.modes_share * self.tolerance)
+        return replace(fineness, most_modes=settings.most_modes, most_sources=settings.most_sources)
 
     def _filled(self, reduced: Mapping[Key, Computed], worst: float, cases: int) -> ReducedInputCertificate:
         """Take the reduced runs; run the other ones in full."""
