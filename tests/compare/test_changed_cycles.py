@@ -105,3 +105,16 @@ def test_a_reduced_model_follows_changed_cycles() -> None:
     for key in (*STIFF, "drive.pressure"):
         for sensor in study.sensors:
             assert near[sensor, key] == pytest.approx(far[sensor, key], abs=comparison.reduced.tolerance)
+
+
+def test_a_reduced_model_follows_a_loss_that_changes_the_strain_energy() -> None:
+    """Beside cords of a loss of their own, tan delta of the rubber changes heat and strain energy: two patterns."""
+    study = tf.study("aircraft-radial", {**SHORT, "mesh.size": "10 mm", "mechanics.motion": "linear"})
+    key = "materials.inner-belts.loss_tangent.value"
+    study = study.replace({"uncertainty": {key: 0.3}})
+    (table,) = tables(study, {"as driven": {}})
+    comparison, full = study.compare(table), study.compare(table, reduced="never")
+    assert comparison.reduced is not None
+    near, far = changes(comparison), changes(full)
+    for sensor in study.sensors:
+        assert near[sensor, key] == pytest.approx(far[sensor, key], abs=0.1 * comparison.reduced.tolerance)

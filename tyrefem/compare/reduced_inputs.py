@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
@@ -18,7 +20,7 @@ from tyrefem.mechanics.strain_laws import strain_law
 from tyrefem.reduced.answers import outcomes_of
 from tyrefem.reduced.model import NotReducibleError, ReducedModel
 from tyrefem.reduced.residual import EARLY, corrected_tyre
-from tyrefem.reduced.training import ReducedFineness, Snapshots, trained
+from tyrefem.reduced.training import ReducedFineness, Snapshots, sources_at, trained
 from tyrefem.reduced.training_rounds import HORIZONS, PackedModel, pack, remember
 from tyrefem.reduced.variant import Variant
 
@@ -177,7 +179,7 @@ class ReducedInputRuns:
         if len({sample.fields.shape[1] for sample in runs.training} | {self.base.problem.operators.size}) > 1:
             raise NotReducibleError("another mesh")
         runs.solve_cycles(self.changed)
-        model, worst = trained(self.base, runs.training, self._fineness), np.inf
+        model, worst = trained(self.base, [*runs.training, self._wanted_sources], self._fineness), np.inf
         for trial in range(self.settings.trials):
             for _ in range(1 if trial else max(self.settings.rounds, len(runs.drives))):
                 model = self._round(model)
@@ -195,6 +197,23 @@ class ReducedInputRuns:
             if np.isfinite(worst)
             else "there is no run for a certificate"
         )
+
+    @functools.cached_property
+    def _wanted_sources(self) -> Snapshots:
+        """Heat sources of the wanted runs at a cold and a warm field, without a solution.
+
+        An input that is lowered teaches no more than two of three patterns: a region's heat, its change with the strain
+        cycle, and the other regions' heat.
+        """
+        first, operators = self.runs.training[0], self.base.problem.operators
+        cold, warm = first.fields[0], first.fields[-1]
+        sources = [first.sources[:0]]
+        for key in self.changed:
+            with suppress(InputError):  # it appears in the run itself
+                tyre = self.runs.work(key).tyre
+                ends = [end * (1 - 1e-9) for end in (*tyre.drive.starts[1:], tyre.drive.end)]
+                sources += [sources_at(operators, tyre, end, field)[None] for end in ends for field in (cold, warm)]
+        return Snapshots(first.fields[:0], np.vstack(sources))
 
     @property
     def _fineness(self) -> ReducedFineness:
@@ -226,7 +245,7 @@ class ReducedInputRuns:
         samples = [sample for sample in runs.each(corrected_run, work) if sample is not None]
         runs.training += samples
         self.rounds, self.corrections = number + 1, self.corrections + len(samples)
-        return trained(self.base, runs.training, self._fineness)
+        return trained(self.base, [*runs.training, self._wanted_sources], self._fineness)
 
     def _fresh(self, reduced: Mapping[Key, Computed]) -> list[Key]:
         """Runs for the certificate: at every drive the run with the largest change; no input twice if possible."""
