@@ -225,12 +225,13 @@ class Harmonics(Brief):
         displacements = np.zeros_like(loads)
         displacements[free] = factor.solve(np.ascontiguousarray(loads[free]))
         work = np.einsum("i...,i...->...", displacements, loads)
-        if (work < 0).any():
-            raise InputError(f"the state is not stable: harmonic {n:g} has negative stiffness")
         size = np.abs(displacements[free])
         parts = np.einsum("i...,i...->...", size, abs(reduced) @ size)
-        if not (work >= ROUND_OFF * parts).all():
+        # A free rigid motion has a stiffness of rounding errors, of either sign.
+        if not (np.abs(work) >= ROUND_OFF * parts).all():
             raise InputError(f"harmonic {n:g} has no stiffness: nothing holds the body")
+        if (work < 0).any():
+            raise InputError(f"the state is not stable: harmonic {n:g} has negative stiffness")
         return displacements
 
     def _last(self, dofs: Indices) -> Indices:
