@@ -55,8 +55,9 @@ class ContactBody:
 
     def block(self, rows: Indices, columns: Indices) -> Array:
         """(n, 3, m, 3) compliance between some points."""
-        every = np.arange(COMPONENTS)
-        block = np.asarray(self.compliance[np.ix_(rows, every, columns, every)])
+        every, size = np.arange(COMPONENTS), COMPONENTS * self.n_points
+        at = np.ix_(*((COMPONENTS * points[:, None] + every).ravel() for points in (rows, columns)))
+        block = self.compliance.reshape(size, size)[at].reshape(len(rows), COMPONENTS, len(columns), COMPONENTS)
         if self.axes is not None:
             n, m = len(rows), len(columns)
             turned = (self.axes[rows] @ block.reshape(n, COMPONENTS, m * COMPONENTS)).reshape(-1, m, COMPONENTS)
