@@ -162,3 +162,17 @@ def test_a_step_that_is_half_open_drags_a_bristle_by_half() -> None:
         dragged.append(-contact.forces[1:3, 2] * tangential / slip)
     assert dragged[0] == pytest.approx([2.0, 1.0], rel=1e-6)
     assert dragged[1] == pytest.approx([1.5, 0.5], rel=1e-6)
+
+
+def test_a_block_of_the_compliance_moves_points_as_the_whole_does() -> None:
+    """Forces on some points, the motion of others, with turned axes and common motions."""
+    generator = np.random.default_rng(7)
+    count, rows, columns = 6, np.array([1, 2, 5]), np.array([0, 2, 3, 4])
+    root = generator.normal(size=(3 * count, 3 * count))
+    axes = np.linalg.qr(generator.normal(size=(count, 3, 3)))[0]
+    common = (generator.normal(size=(count, 3, 2)), np.array([[2.0, 0.3], [0.3, -1.0]]))
+    body = ContactBody((root @ root.T).reshape(count, 3, count, 3), np.arange(count), axes=axes, common=common)
+    forces = np.zeros((count, 3))
+    forces[columns] = generator.normal(size=(len(columns), 3))
+    moved = np.tensordot(body.block(rows, columns), forces[columns], axes=2)
+    np.testing.assert_allclose(moved, body.displacement(forces)[rows], rtol=1e-10)
