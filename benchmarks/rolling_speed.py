@@ -31,8 +31,8 @@ from tyrefem.mechanics.rolling.roll import WheelOnRoad, wheel_on_road
 from tyrefem.mechanics.rolling.rolling_motion import RollingMotion
 
 STUDY, LOAD, HARMONICS, POINTS = "passenger-205-55r16", 4000.0, 40, 20
-#: Mesh of the study with 5,000 nodes of the mechanics. Large motion takes a coarser mesh from the same size.
-MESH, LARGE_MESH = "1.7 mm", "1.7 mm"
+#: Mesh of the study with 5,000 nodes of the mechanics, and a coarser one for large motion.
+MESH, LARGE_MESH = "1.4 mm", "1.7 mm"
 #: Elements along the meridian, and angles of half a wheel, of the hexahedra that are timed.
 HEXAHEDRA = ((4, 6, 5), (6, 8, 6), (8, 10, 8), (10, 14, 10))
 #: Factorisations of a point in three dimensions.
