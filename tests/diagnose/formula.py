@@ -52,7 +52,10 @@ class Formula:
         return [self._answer(method, question) for question in questions]
 
     def _answer(self, method: str, question: tuple[Any, ...]) -> Array:
-        values = {unknown.key: x for unknown, x in question[-1].items()}
+        # A number of a card and an effect beyond it add up.
+        values: dict[str, float] = {}
+        for unknown, x in question[-1].items():
+            values[unknown.key] = values.get(unknown.key, 0.0) + x
         self.questions.append((method, values))
         law = self.held_out if self.held_out is not None and question[0] == 1 else self.law
         if method == "predict":

@@ -20,7 +20,7 @@ from tyrefem.diagnose.inference.evidence import Posterior
 from tyrefem.diagnose.inference.linear_model import DesignMatrix, LinearModel
 from tyrefem.diagnose.inference.shared_error import SharedError
 from tyrefem.diagnose.unknowns.candidates import Candidate, Members
-from tyrefem.diagnose.unknowns.unknown import Unknown
+from tyrefem.diagnose.unknowns.unknown import Unknown, twins
 
 Array = NDArray[np.float64]
 Tick = Callable[[], None] | None
@@ -294,7 +294,7 @@ def predictive(r: Array, covariance: Array) -> tuple[float, float]:
 
 
 def linear_about(residuals: Residuals, fit: FittedSet, unknowns: Sequence[Unknown]) -> LinearModel:
-    """The linear model about a fit; the columns of further unknowns are those at x = 0.
+    """The linear model about a fit; the columns of further unknowns are those at x = 0, of `twins` those of the fit.
 
     A shared error of the residuals that the fit was made without is whitened, in place of that of the fit; the offset
     of the residuals is subtracted if the fit has neither.
@@ -312,6 +312,8 @@ def linear_about(residuals: Residuals, fit: FittedSet, unknowns: Sequence[Unknow
                     [residuals.runs[i].whitened(residuals.offset[i]) for i in residuals.fitted]
                 )
             jacobian, data = shared.whitened(jacobian), shared.whitened(data)
+    for new, known in twins(unknowns, fit.unknowns).items():
+        further[:, new] = jacobian[:, known]
     return LinearModel(
         DesignMatrix((*fit.unknowns, *unknowns), len(fit.unknowns), np.hstack([jacobian, further])), data
     )

@@ -15,7 +15,7 @@ from tyrefem.diagnose.inference.evidence import Posterior, posterior
 from tyrefem.diagnose.inference.linear_model import LinearModel
 from tyrefem.diagnose.settings import DiagnosisSettings
 from tyrefem.diagnose.unknowns.candidates import Candidate, Members
-from tyrefem.diagnose.unknowns.unknown import Unknown
+from tyrefem.diagnose.unknowns.unknown import Unknown, twins
 
 Array = NDArray[np.float64]
 
@@ -299,6 +299,9 @@ def initial_state(
     else:
         unknowns = (*part.unknowns, *amplitudes)
         x, r = np.concatenate([part.x, np.zeros(len(amplitudes))]), part.r
+        columns = columns.copy()
+        for number, place in twins(amplitudes, part.unknowns).items():
+            columns[:, number] = part.J[:, place]
         J, computed, shapes = np.hstack([part.J, columns]), part.computed, (*part.shapes, *shapes)
     r = r - linear.jacobian[:, design.columns(present)].sum(axis=1)
     empty = Posterior(x, np.zeros((len(x), len(x))), 0.0, np.zeros(len(x), dtype=bool), np.zeros(len(x)))

@@ -125,6 +125,19 @@ class Unknown:
         return "1" if self.parameter is None else self.parameter.prior.unit
 
 
+def twins(unknowns: Sequence[Unknown], known: Sequence[Unknown]) -> dict[int, int]:
+    """Place of an unknown -> place of the same number among known ones, with another prior: readings follow their sum.
+
+    The tolerance of a sensor's card and the effect of a sensor beyond it are twins.
+
+    >>> lag = Unknown("effects.sensor-lag.crown.slower_by", 2.0, effect="sensor-lag")
+    >>> twins([Unknown("k", 0.1), replace(lag, sd=15.0)], [lag])
+    {1: 0}
+    """
+    place = {unknown.key: number for number, unknown in enumerate(known)}
+    return {number: place[each.key] for number, each in enumerate(unknowns) if each.key in place and each not in known}
+
+
 def of_effect(
     effect: type[Effect], choice: Choice, sd: float | None = None, stated: Effect | None = None
 ) -> tuple[Unknown, ...]:
