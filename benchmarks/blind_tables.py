@@ -3,8 +3,7 @@
     python benchmarks/blind_tables.py --ordinary results/blind/cases --structural results/blind-structural/cases
 
 Reads the case files of ``tyrefem blind`` or the records of ``benchmarks/blind.py``; the test need not be finished.
-Writes the rates and all failures as CSV below docs/evidence/tables, the picture of the structural cases, and the page's
-table of goals.
+Writes the rates and all failures as CSV below docs/evidence/tables, the picture, and the page's table of goals.
 """
 
 from __future__ import annotations
@@ -16,7 +15,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from tyrefem.diagnose.blind.blind_case import DATA_MODELS, STRUCTURAL
+from tyrefem.diagnose.blind.blind_case import DATA_MODELS
 from tyrefem.diagnose.blind.criteria import Rate
 from tyrefem.diagnose.blind.rates import Blind
 from tyrefem.output import atomic_path
@@ -70,9 +69,8 @@ def write(blind: Blind) -> None:
     table(TABLES / f"diagnosis-blind-{name}.csv", RATE, [rate_row(*item) for item in blind.rates.items() if item[1].of])
     failed = [failure_row(each) for each in blind.failures] or [["none", *"-" * (len(FAILURE) - 1)]]
     table(TABLES / f"diagnosis-blind-{name}-failures.csv", FAILURE, failed)
-    if name == STRUCTURAL:
-        with atomic_path(PICTURES / "blind-structural.png") as temporary:
-            temporary.write_bytes(png(picture(blind)))
+    with atomic_path(PICTURES / f"blind-{name}.png") as temporary:
+        temporary.write_bytes(png(picture(blind)))
     page = PAGE.read_text(encoding="utf-8")
     begin, end = BEGIN.format(name=name), END.format(name=name)
     before, _, rest = page.partition(begin)
