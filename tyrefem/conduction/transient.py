@@ -114,7 +114,10 @@ class Integration:
     def _first_step(self, t: float, span: float) -> float:
         b = self.balance
         G, _, _ = b.remainder(t, self.y)
-        rate = (G - b.S @ self.y.u + b.B @ self.y.g) / (b.M @ np.ones(G.size))
+        heat, capacity = G - b.S @ self.y.u + b.B @ self.y.g, b.M @ np.ones(G.size)
+        # Nodes of quadratic triangles on the axis have none by themselves, but for rounding.
+        lumped = np.abs(capacity) > 1e-9 * np.abs(capacity).max()
+        rate = np.divide(heat, capacity, out=np.zeros_like(heat), where=lumped)
         fastest = float(np.max(np.abs(rate[b.fixed.free]), initial=0.0))
         return min(span, 30 * self.goal / fastest if fastest > 0 else span)
 
