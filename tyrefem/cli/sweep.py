@@ -204,9 +204,12 @@ def sweep(
         results_folder(place, "sweep", file_names(), force=force, keeps=kept_names()) as folder,
         stages() as tick,
     ):
-        design = computed_design(wanted, how.given({"folder": folder, "progress": tick}), scheduler, workers)
+        kept = f"finished variants are in {folder}; the same command resumes from there"
+        begun = [folder / name for name in kept_names()]
+        with keeping(lambda: kept if any(file.exists() for file in begun) else "nothing was written"):
+            design = computed_design(wanted, how.given({"folder": folder, "progress": tick}), scheduler, workers)
         tick("drawing", 0, 1)
-        with keeping(f"finished variants are in {folder}; the same command resumes from there"):
+        with keeping(kept):
             summary = save(design, folder, pictures=pictures)
             if vtk and not design.interrupted:
                 tick("VTK", 0, 1)
@@ -218,7 +221,6 @@ def sweep(
         fail(f"variant {variant}: {reason}")
     if len(design.failed) > FAILURES_SHOWN:
         fail(f"... and {len(design.failed) - FAILURES_SHOWN} more; all are in {folder / 'sweep.csv'}")
-    kept = f"finished variants are in {folder}; the same command resumes from there"
     if design.interrupted == "interrupted":
         raise Interrupted(kept)
     if design.interrupted:
