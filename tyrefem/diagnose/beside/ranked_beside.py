@@ -18,7 +18,7 @@ from tyrefem.diagnose.data.residuals import Residuals
 from tyrefem.diagnose.fitting.fits import FittedSet, continued, first_fits, fitted_beside, linear_about, state_beside
 from tyrefem.diagnose.fitting.gauss_newton import FitState, initial_state
 from tyrefem.diagnose.fitting.selection import ScoredSet, SelectionProblem
-from tyrefem.diagnose.inference.linear_model import DesignMatrix, LinearModel
+from tyrefem.diagnose.inference.linear_model import LinearModel
 from tyrefem.diagnose.unknowns.candidates import Candidate, Members, separate
 
 #: A set whose linear estimate is this far below the best is not fitted beside a discrepancy, nats.
@@ -242,7 +242,7 @@ class RankedBeside(Brief):
         return nearest({part: fit for part, fit in self.fits.items() if part != members}, members, self.score)
 
     def _estimate(self) -> None:
-        """Estimate sets with one effect more or less than a good fit, in the linear model about it."""
+        """Estimate sets with one effect more, one less or another one than a good fit, in the linear model about it."""
         top, settings = max(map(self.score, self.fits)), self.problem.settings
         for members, fit in self.fits.items():
             if self.score(members) < top - settings.far_score:
@@ -251,38 +251,27 @@ class RankedBeside(Brief):
                 part = tuple(each for each in members if each != member)
                 value = self.problem.prior(part) + evidence_without(fit, member, self.residuals.log_det)
                 self._better(part, value)
-                if not member.presence:
-                    self._exchange(members, member, fit)
-            if len(members) < settings.largest:
-                self._extend(members, fit)
+            self._estimate_others(members, fit)
 
-    def _extend(self, members: Members, fit: FittedSet) -> None:
+    def _estimate_others(self, members: Members, fit: FittedSet) -> None:
+        """Estimate sets with a further effect, and with another effect in place of a member."""
         problem = self.problem
-        others = [each for each in self.candidates if separate(each, members)]
-        unknowns = [unknown for each in others for unknown in (*each.amplitudes, *each.presence)]
-        about = linear_about(self.residuals, fit, unknowns)
-        of_part = about.log_evidence(())
-        for candidate in others:
-            more = problem.ordered((*members, candidate))
-            gain = about.log_evidence((candidate,)) - of_part + problem.prior(more) - problem.prior(members)
-            self._better(more, self.score(members) + gain)
+        others = [each for each in self.candidates if each not in members]
+        about = linear_about(
+            self.residuals, fit, [unknown for each in others for unknown in (*each.amplitudes, *each.presence)]
+        )
+        of_fit = about.log_evidence(()) + problem.prior(members) - self.score(members)
 
-    def _exchange(self, members: Members, member: Candidate, fit: FittedSet) -> None:
-        """Estimate sets with another effect in place of a member, in the linear model about the fit."""
-        problem = self.problem
-        part = tuple(each for each in members if each is not member)
-        others = [each for each in self.candidates if each not in members and separate(each, part)]
-        unknowns = [unknown for each in others for unknown in (*each.amplitudes, *each.presence)]
-        about = linear_about(self.residuals, fit, unknowns)
-        kept = [k for k, unknown in enumerate(about.design.unknowns) if unknown not in member.unknowns]
-        count = len(fit.unknowns) - sum(unknown in member.unknowns for unknown in fit.unknowns)
-        names = tuple(about.design.unknowns[k] for k in kept)
-        without = LinearModel(DesignMatrix(names, count, about.jacobian[:, kept]), about.data)
-        of_fit = linear_about(self.residuals, fit, ()).log_evidence(())
-        for candidate in others:
-            other = problem.ordered((*part, candidate))
-            gain = without.log_evidence((candidate,)) - of_fit + problem.prior(other) - problem.prior(members)
-            self._better(other, self.score(members) + gain)
+        def estimate(model: LinearModel, kept: Members) -> None:
+            for candidate in (each for each in others if separate(each, kept)):
+                other = problem.ordered((*kept, candidate))
+                self._better(other, model.log_evidence((candidate,)) + problem.prior(other) - of_fit)
+
+        if len(members) < problem.settings.largest:
+            estimate(about, members)
+        for member in members:
+            if not member.presence:
+                estimate(about.without(member.unknowns), tuple(each for each in members if each is not member))
 
     def _better(self, members: Members, value: float) -> None:
         members = self.problem.ordered(members)

@@ -87,15 +87,15 @@ def backward(problem: Conduction, times: Array, initial: float) -> tuple[Array, 
             first, firstg = G, Gg
         rest.append((G, Gg))
         c, past, pastg = (1.5, 2 * u[-1] - 0.5 * u[-2], 2 * g[-1] - 0.5 * g[-2]) if even else (1.0, u[-1], g[-1])
-        mass = balance.M_data
+        M = balance.M
         if balance.variable_capacity:
-            mass, key = balance.mass(2 * now.u - u[-2] if even else now.u), None
+            M, key = problem.operators.matrix(balance.mass(2 * now.u - u[-2] if even else now.u)), None
         if key != (balance.version, c / h):
-            factor = splu(problem.operators.matrix(c / h * mass + balance.S_data).tocsc())
+            factor = splu(problem.operators.matrix(c / h * M.data + balance.S_data).tocsc())
             through = factor.solve(balance.B.copy())
             small = np.diag(c / h * heat) + balance.D - balance.B.T @ through
             key = balance.version, c / h
-        body = factor.solve(problem.operators.matrix(mass) @ past / h + first)
+        body = factor.solve(M @ past / h + first)
         gas = np.linalg.solve(small, heat * pastg / h + firstg + balance.B.T @ body)
         u.append(body + through @ gas)
         g.append(gas)
@@ -119,17 +119,17 @@ def theta_steps(problem: Conduction, times: Array, initial: float, theta: float 
             balance.freeze(middle, now)
         ahead = now if i == 0 else State(1.5 * now.u - 0.5 * u[-2], 1.5 * now.g - 0.5 * g[-2])
         G, Gg, _ = balance.remainder(middle, ahead)
-        mass = balance.M_data
+        M = balance.M
         if balance.variable_capacity:
-            mass, key = balance.mass(ahead.u), None
+            M, key = problem.operators.matrix(balance.mass(ahead.u)), None
         if key != (balance.version, h):
-            factor = splu(problem.operators.matrix(mass / h + theta * balance.S_data).tocsc())
+            factor = splu(problem.operators.matrix(M.data / h + theta * balance.S_data).tocsc())
             through = factor.solve(theta * balance.B)
             small = np.diag(heat / h) + theta * balance.D - theta * balance.B.T @ through
             key = balance.version, h
         flow = balance.B @ now.g - balance.S @ now.u
         flow_g = balance.B.T @ now.u - balance.D @ now.g
-        body = factor.solve(problem.operators.matrix(mass) @ now.u / h + (1 - theta) * flow + G)
+        body = factor.solve(M @ now.u / h + (1 - theta) * flow + G)
         gas = np.linalg.solve(small, heat * now.g / h + (1 - theta) * flow_g + Gg + theta * balance.B.T @ body)
         u.append(body + through @ gas)
         g.append(gas)

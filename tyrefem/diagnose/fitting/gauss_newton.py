@@ -299,7 +299,6 @@ def initial_state(
     else:
         unknowns = (*part.unknowns, *amplitudes)
         x, r = np.concatenate([part.x, np.zeros(len(amplitudes))]), part.r
-        columns = columns.copy()
         for number, place in twins(amplitudes, part.unknowns).items():
             columns[:, number] = part.J[:, place]
         J, computed, shapes = np.hstack([part.J, columns]), part.computed, (*part.shapes, *shapes)

@@ -75,6 +75,14 @@ class LinearModel(Brief):
         """The same model for other data."""
         return LinearModel(self.design, data)
 
+    def without(self, unknowns: Sequence[Unknown]) -> LinearModel:
+        """The model in which some unknowns are 0."""
+        design = self.design
+        kept = [column for column, unknown in enumerate(design.unknowns) if unknown not in unknowns]
+        nuisance = sum(column < design.nuisance for column in kept)
+        names = tuple(design.unknowns[column] for column in kept)
+        return LinearModel(DesignMatrix(names, nuisance, design.jacobian[:, kept]), self.data)
+
     @property
     def jacobian(self) -> Array:
         """(n, k)."""
