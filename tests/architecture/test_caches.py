@@ -30,7 +30,7 @@ ALLOWED = {
     "variants/answers.py: _OF_INPUTS = {}": "those of them that need no run",
     "variants/task.py: _folders = []": "the temporary folder of this process, one",
     "diagnose/forward/evaluations.py: _MODEL = {}": "the latest forward model of a worker process, one",
-    "diagnose/blind/rates.py: _TEST = []": "the blind test of a worker process, given when it starts",
+    "diagnose/blind/kept_cases.py: _WORK = []": "what the cases of a worker process share, given when it starts",
     "compare/packed_drive.py: _TYRES = {}": "the drives of a comparison, taken out when it ends",
     "cards/__init__.py: cache(_plausible)": "one value for every class of card",
     "cards/__init__.py: cache(_allowed)": "one value for every class of card",

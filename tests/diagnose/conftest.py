@@ -9,9 +9,11 @@ from typing import Any
 import pytest
 from hidden import FINISHED, WARMER, Case, measure, study
 
+from tyrefem.diagnose.data.sensitivities import Sensitivities
 from tyrefem.diagnose.forward import evaluations
-from tyrefem.diagnose.forward.evaluations import ProgressStore
+from tyrefem.diagnose.forward.evaluations import Evaluations, ProgressStore
 from tyrefem.diagnose.forward.forward_model import ForwardModel
+from tyrefem.diagnose.layout.isolability import layout_sensitivities, planned
 
 
 @pytest.fixture(scope="session")
@@ -47,3 +49,12 @@ def case(tmp_path_factory: pytest.TempPathFactory) -> Case:
     store.clear()
     diagnosis.save(folder / "out")
     return Case(owner, diagnosis, folder / "out", computed[:first], computed[first:], kept, resumed)
+
+
+@pytest.fixture(scope="module")
+def known(case: Case) -> Sensitivities:
+    """The study's planned runs, with the responses that the diagnosis of the same study found."""
+    study = case.study
+    sensors = [sensor_series.sensor for sensor_series in case.diagnosis.gap.runs[0].sensors]
+    model = ForwardModel(study, planned(study, sensors))
+    return layout_sensitivities(Evaluations(model), case.diagnosis.gap.responses)

@@ -23,7 +23,7 @@ from tyrefem.diagnose.layout.conformal import (
 )
 from tyrefem.diagnose.layout.false_alarms import Frequency, false_alarms
 from tyrefem.diagnose.layout.linear_layout import LinearLayout
-from tyrefem.diagnose.layout.quick_cases import drawn, posterior_ranks
+from tyrefem.diagnose.layout.quick_cases import drawn, posterior_ranks, readings
 from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
 from tyrefem.diagnose.unknowns.candidates import Candidate, Members, SetPrior
 from tyrefem.diagnose.unknowns.unknown import Unknown
@@ -119,10 +119,9 @@ def test_wrong_probabilities_and_ranks_are_noticed() -> None:
         case = drawn(wide, rng)
         if case.place != 1:
             continue
-        ranks["right"] += posterior_ranks(
-            wide.fit(case.fitted, np.zeros(0), (early,)), case.values, [early.unknowns[0]]
-        )
-        fit = narrow.fit(case.fitted, np.zeros(0), (of_narrow,))
+        fitted, _ = readings(wide, case, rng)
+        ranks["right"] += posterior_ranks(wide.fit(fitted, np.zeros(0), (early,)), case.values, [early.unknowns[0]])
+        fit = narrow.fit(fitted, np.zeros(0), (of_narrow,))
         ranks["narrow"] += posterior_ranks(fit, {of_narrow.unknowns[0]: case.values[early.unknowns[0]]},
             [of_narrow.unknowns[0]])  # fmt: skip
     assert RankTest.of(ranks["right"]).p_value > 0.01

@@ -34,15 +34,6 @@ from tyrefem.inputs.name_patterns import SCALES
 
 
 @pytest.fixture(scope="module")
-def known(case: Case) -> Sensitivities:
-    """The study's planned runs, with the responses that the diagnosis of the same study found."""
-    study = case.study
-    sensors = [sensor_series.sensor for sensor_series in case.diagnosis.gap.runs[0].sensors]
-    model = ForwardModel(study, planned(study, sensors))
-    return layout_sensitivities(Evaluations(model), case.diagnosis.gap.responses)
-
-
-@pytest.fixture(scope="module")
 def isolability_result(case: Case, known: Sensitivities) -> Isolability:
     return isolability(case.study, known=known)
 

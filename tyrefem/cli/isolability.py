@@ -19,6 +19,7 @@ from tyrefem.cli.common import (
 )
 from tyrefem.cli.progress import progress
 from tyrefem.cli.shell import answer_with, say
+from tyrefem.errors import InputError
 from tyrefem.interruption import keeping
 from tyrefem.output.folder import results_folder
 
@@ -36,14 +37,22 @@ def isolability(
         int | None,
         typer.Option("--calibrate", min=40, max=100_000, help="Quick cases that test the stated probabilities."),
     ] = None,
-    seed: Annotated[int, typer.Option(min=0, help="Seed of the quick cases.")] = 1,
+    fitted: Annotated[
+        bool, typer.Option("--fitted", help="Simulate and fit the cases as a diagnosis does: some 10 s each.")
+    ] = False,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of the cases.")] = 1,
     force: ForceOption = False,
 ) -> None:
     """Compute which effects the study's sensors and runs can distinguish, and how strong these must be.
 
-    With --calibrate N, N quick cases test the probabilities that a diagnosis would state.
+    With --calibrate N, N quick cases test the probabilities that a diagnosis would state, in its linear model; with
+    --fitted by simulations and full fits. Finished cases of these are kept: the same command continues.
     """
+    if fitted and cases is None:
+        raise InputError("needs --calibrate, the number of cases", field="--fitted")
     from tyrefem.api import study as load
+    from tyrefem.diagnose.blind.fitted_cases import fitted_cases
+    from tyrefem.diagnose.blind.kept_cases import CASES
     from tyrefem.diagnose.forward.evaluations import ProgressStore
     from tyrefem.diagnose.layout.calibration import calibrated
     from tyrefem.diagnose.layout.isolability import NEEDS, planned_sensitivities
@@ -58,7 +67,9 @@ def isolability(
     warn(loaded.warnings)
     count = workers or min(os.cpu_count() or 1, 4)
     place = out or Path("results") / f"{loaded.name}-isolability"
-    with results_folder(place, "isolability", FILES, force=force, keeps=[f"{PROGRESS}/*/*.npz"]) as folder:
+    with results_folder(
+        place, "isolability", FILES, force=force, keeps=["cases/*.json", f"{PROGRESS}/*/*.npz"]
+    ) as folder:
         store = ProgressStore(folder / PROGRESS)
         with keeping(lambda: store.kept):
             with progress(f"{loaded.name}: sensitivities", 1.0) as step:
@@ -68,8 +79,11 @@ def isolability(
             result = found_by(loaded, known=known)
             calibration = None
             if cases is not None:
-                with progress(f"{loaded.name}: {cases} quick cases", 1.0) as step:
-                    calibration = calibrated(loaded, known, cases, seed, lambda done: step(done / cases))
+                with progress(f"{loaded.name}: {cases} {'fitted' if fitted else 'quick'} cases", 1.0) as step:
+                    tick, by_fits = lambda done: step(done / cases), None
+                    if fitted:
+                        by_fits = fitted_cases(loaded, known, cases, seed, folder / CASES, count, tick)
+                    calibration = calibrated(loaded, known, cases, seed, tick, by_fits)
             with atomic_folder(folder) as temporary:
                 result.table.to_csv(temporary / "isolability.csv", index=False, lineterminator="\n")
                 text = json.dumps(jsonable(result.to_dict()), indent=1, ensure_ascii=False, allow_nan=False)

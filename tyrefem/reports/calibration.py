@@ -41,7 +41,9 @@ def picture(calibration: Calibration) -> Figure:
     parts = [("amplitudes", calibration.amplitudes), ("base numbers, sensors", calibration.base_numbers)]
     for number, (name, ranks) in enumerate(parts):
         _ranks(add_axes(drawn, 4.5 + 3.2 * number, 0.6, 2.6, 2.8), name, ranks)
-    facts = f"{len(calibration.cases)} quick cases drawn from the priors, seed {calibration.seed}; intervals of 95 %"
+    facts = (
+        f"{len(calibration.cases)} {calibration.kind} drawn from the priors, seed {calibration.seed}; intervals of 95 %"
+    )
     title(drawn, f"Calibration of {calibration.study}", facts)
     return drawn
 

@@ -262,6 +262,7 @@ INNER: dict[str, Keys] = {
     "isolability.calibration": {
         "study": "text: Study.", "layout": "table: Sensors and runs.", "seed": "integer: Of the cases.",
         "cases": "integer: Number.", "ranks": "table: Of what -> test that ranks are uniform.",
+        "fitted": "truth: Simulated and fitted as a diagnosis does; else linear.",
         "reliability": "table: Of what -> stated probabilities and how often they held.",
         "unexplained": "table: How often this verdict is false.", "conformal": "table: Sets with known coverage.",
     },

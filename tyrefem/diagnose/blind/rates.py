@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 import math
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
-from concurrent.futures import as_completed
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import pairwise
@@ -36,6 +33,7 @@ from tyrefem.diagnose.blind.criteria import (
     rate,
     structural_rates,
 )
+from tyrefem.diagnose.blind.kept_cases import CASES, computed_cases, keep_cases, kept_cases, resuming, tag_for
 from tyrefem.diagnose.data.sensitivities import responses, unknowns_of
 from tyrefem.diagnose.forward.effort import CASE, SENSITIVITIES, STRUCTURAL_CASE, check_effort
 from tyrefem.diagnose.forward.evaluations import ProgressStore, evaluating
@@ -44,9 +42,7 @@ from tyrefem.diagnose.layout.isolability import candidates_of, layout_notes, pla
 from tyrefem.errors import InputError, nearest
 from tyrefem.inputs.study import StudyData
 from tyrefem.inputs.study_plugins import plugin_summary
-from tyrefem.interruption import interruption_delayed, keeping
-from tyrefem.output import atomic_path, jsonable
-from tyrefem.processes import processes
+from tyrefem.output import jsonable
 from tyrefem.requirements import Requirements
 from tyrefem.simulation.surroundings import GAS
 from tyrefem.variants.answer_store import PROGRESS
@@ -170,18 +166,6 @@ class BlindTest:
     data_model: str = ORDINARY
 
 
-#: The blind test of a worker process.
-_TEST: list[BlindTest] = []
-
-
-def _install(test: BlindTest) -> None:
-    _TEST[:] = [test]
-
-
-def _case_in_worker(number: int) -> Row:
-    return _case(_TEST[0], number)
-
-
 def _case(test: BlindTest, number: int) -> Row:
     study = test.study
     case = cases(study, test.count, test.seed)[number]
@@ -231,22 +215,15 @@ def run_blind(
     candidates = candidates_of(study)
     drives = planned(study)
     tag = tag_of(study, count, seed, **options)
-    store = folder / "cases"
-    store.mkdir(parents=True, exist_ok=True)
-    rows: dict[int, Row] = dict(options.get("finished", {}))
-    for path in store.glob(f"{tag}-*.json"):
-        rows[int(path.stem.split("-")[1])] = json.loads(path.read_text(encoding="utf-8"))
+    store = folder / CASES
+    rows: dict[int, Row] = dict(options.get("finished", {})) | kept_cases(store, tag)
     wanted = options.get("only", range(count))
     if beyond := [number for number in wanted if not 0 <= number < count]:
         raise InputError(f"there is no case {beyond[0]}; the cases are 0 to {count - 1}", field="only")
     left = [number for number in range(count) if number in wanted and number not in rows]
     # The shared responses are kept until all cases are finished.
     progress = ProgressStore(folder / PROGRESS)
-
-    def kept() -> str:
-        return f"{len(rows)} of {count} cases are finished; the same command resumes from there"
-
-    with keeping(kept):
+    with resuming(rows, count):
         if left:
             model = ForwardModel(study, drives)
             of_case = STRUCTURAL_CASE if data_model == STRUCTURAL else CASE
@@ -256,12 +233,7 @@ def run_blind(
                 unknowns, _ = unknowns_of(study, [*study.sensors, GAS], candidates)
                 known = responses(evaluations, unknowns)
             test = BlindTest(study, count, seed, known, reduced, mesh, data_model)
-            for number, row in _answers(test, left, workers):
-                rows[number] = row
-                with interruption_delayed(), atomic_path(store / f"{tag}-{number:05d}.json") as temporary:
-                    temporary.write_text(json.dumps(row), encoding="utf-8")
-                if tick:
-                    tick(len(rows))
+            keep_cases(rows, computed_cases(_case, test, left, workers), store, tag, tick)
         notes = layout_notes(study)
         if not any(drive.hold_out for drive in drives):
             notes += ("No run is held out, so the rates do not cover runs that were not fitted.",)
@@ -276,22 +248,10 @@ def tag_of(study: StudyData, count: int, seed: int, **options: Unpack[BlindOptio
     data_model, reduced, mesh = _chosen(options)
     decisive = [jsonable(dict(study.data)), count, seed, reduced, dict(mesh), tyrefem.__version__]
     decisive += [] if data_model == ORDINARY else [data_model]
-    text = json.dumps(decisive, sort_keys=True, default=str)
-    return hashlib.sha256(text.encode()).hexdigest()[:12]
+    return tag_for(decisive)
 
 
 def _chosen(options: BlindOptions) -> tuple[str, str, Mapping[str, Any]]:
     """Model of the data, use of reduced models, and mesh of the data, of options of which some are not given."""
     data_model, stated = checked_model(options.get("truth", ORDINARY)), options.get("mesh")
     return data_model, options.get("reduced", "auto"), mesh_of(data_model) if stated is None else stated
-
-
-def _answers(test: BlindTest, numbers: Sequence[int], workers: int) -> Iterable[tuple[int, Row]]:
-    if workers <= 1:
-        for number in numbers:
-            yield number, _case(test, number)
-        return
-    with processes(workers, _install, test) as pool:
-        futures = {pool.submit(_case_in_worker, number): number for number in numbers}
-        for future in as_completed(futures):
-            yield futures[future], future.result()

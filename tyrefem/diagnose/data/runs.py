@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 
 import numpy as np
@@ -49,6 +49,16 @@ class MeasuredDrive(DriveSampling):
         """The drive and the sampling of the run, without the readings."""
         sensors = tuple(readings.sampling for readings in self.sensors)
         return DriveSampling(self.name, self.drive, self.hold_out, sensors)
+
+
+def drive_of_means(sampling: DriveSampling, means: Array) -> MeasuredDrive:
+    """A run whose block means, of all sensors one after the other, are ``means`` (n_blocks,) degC."""
+    sensors = []
+    for readings, place in zip(sampling.sensors, sampling.parts().values(), strict=True):
+        measured = np.repeat(means[place], readings.sizes.astype(int))
+        stated = {each.name: getattr(readings, each.name) for each in fields(SensorSampling)}
+        sensors.append(MeasuredSensor(**stated, measured=measured))
+    return MeasuredDrive(sampling.name, sampling.drive, sampling.hold_out, tuple(sensors))
 
 
 def measured_drive(experiment: Experiment, study: StudyData, settings: DiagnosisSettings = DEFAULT) -> MeasuredDrive:

@@ -74,6 +74,10 @@ class SensorSampling(Brief):
         """L^-1 times block values (n_blocks, ...), with C = L L^T: independent, of unit variance."""
         return np.asarray(solve_triangular(self._root, blocks, lower=True))
 
+    def scatter(self, rng: np.random.Generator) -> Array:
+        """(n_blocks,) K, errors of the block means drawn at random: L z."""
+        return np.asarray(self._root @ rng.normal(size=len(self.starts)))
+
 
 @dataclass(frozen=True, eq=False)
 class DriveSampling(Brief):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -96,6 +96,7 @@ class Calibration(Brief):
     ----------
     study, sensors, runs : the layout. seed : of the cases. cases : the first half gives the conformal thresholds, the
         second half checks them. alarms : criterion -> false alarms of "unexplained" with nothing hidden.
+    fitted : the cases are simulated and fitted as a diagnosis does; else they are linear, as the alarms always are.
     """
 
     study: str
@@ -104,6 +105,12 @@ class Calibration(Brief):
     seed: int
     cases: tuple[QuickCase, ...]
     alarms: Mapping[str, Frequency]
+    fitted: bool = False
+
+    @property
+    def kind(self) -> str:
+        """What the cases are."""
+        return f"{'fitted' if self.fitted else 'quick'} cases"
 
     @cached_property
     def amplitudes(self) -> RankTest:
@@ -189,6 +196,7 @@ class Calibration(Brief):
             "layout": {"sensors": list(self.sensors), "runs": list(self.runs)},
             "seed": self.seed,
             "cases": len(self.cases),
+            "fitted": self.fitted,
             "ranks": {
                 "amplitudes": self.amplitudes.to_dict(),
                 "base_numbers_and_sensors": self.base_numbers.to_dict(),
@@ -213,7 +221,7 @@ class Calibration(Brief):
 
     def words(self) -> list[str]:
         """The results as lines of text."""
-        lines = [f"{len(self.cases)} quick cases of {self.study}, seed {self.seed}; intervals of 95 %."]
+        lines = [f"{len(self.cases)} {self.kind} of {self.study}, seed {self.seed}; intervals of 95 %."]
         for name, ranks in (
             ("amplitudes", self.amplitudes),
             ("base numbers and sensors", self.base_numbers),
@@ -254,35 +262,44 @@ def frequency_words(each: Frequency) -> str:
 
 def calibrate(
     layout: LinearLayout,
-    count: int,
+    cases: int | Sequence[QuickCase],
     seed: int = 1,
     *,
     study: str = "",
     sensors: Sequence[str] = (),
     runs: Sequence[str] = (),
     draws: int = DRAWS,
-    tick: Callable[[int], None] | None = None,
 ) -> Calibration:
-    """Judge ``count`` quick cases of a linear layout, and ``draws`` readings with nothing hidden.
+    """What judged ``cases`` of a layout say (a number: quick cases), and ``draws`` readings with nothing hidden.
 
     Causes, amplitudes, base numbers, sensors and noise are drawn from the priors that the diagnosis states, so right
-    probabilities are calibrated. The model is linear: what saturation and other models do, only blind tests show.
+    probabilities are calibrated. Quick cases and draws are linear: what saturation does, fitted cases show; what other
+    models do, only blind tests.
     """
-    cases = []
-    for case in quick_cases(layout, count, seed):
-        cases.append(case)
-        if tick:
-            tick(len(cases))
+    judged = tuple(quick_cases(layout, cases, seed)) if isinstance(cases, int) else tuple(cases)
     alarms = false_alarms(layout, draws, seed) if draws else {}
-    return Calibration(study, tuple(sensors), tuple(runs), seed, tuple(cases), alarms)
+    return Calibration(study, tuple(sensors), tuple(runs), seed, judged, alarms)
 
 
 def calibrated(
-    study: StudyData, known: Sensitivities, count: int, seed: int = 1, tick: Callable[[int], None] | None = None
+    study: StudyData,
+    known: Sensitivities,
+    count: int,
+    seed: int = 1,
+    tick: Callable[[int], None] | None = None,
+    fitted: Sequence[QuickCase] | None = None,
 ) -> Calibration:
-    """Calibration of the planned runs of a study with known sensitivities, see `calibrate`."""
+    """Calibration of the planned runs of a study with known sensitivities, see `calibrate`.
+
+    ``fitted``: cases that take the place of ``count`` quick ones.
+    """
+    layout = linear_layout(study, known)
     sensors = dict.fromkeys(name for drive in known.drives for name in drive.parts())
-    return calibrate(
-        linear_layout(study, known), count, seed, study=study.name, sensors=tuple(sensors),
-        runs=[drive.name for drive in known.drives], tick=tick,
-    )  # fmt: skip
+    cases = list(fitted or ())
+    for case in quick_cases(layout, count, seed) if fitted is None else ():
+        cases.append(case)
+        if tick:
+            tick(len(cases))
+    names = [drive.name for drive in known.drives]
+    result = calibrate(layout, cases, seed, study=study.name, sensors=tuple(sensors), runs=names)
+    return replace(result, fitted=fitted is not None)

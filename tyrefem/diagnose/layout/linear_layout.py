@@ -203,15 +203,22 @@ def _log_mass(low: Array, high: Array) -> Array:
     return np.asarray(upper + np.log1p(-np.exp(np.minimum(log_ndtr(low) - upper, -1e-300))))
 
 
-def linear_layout(study: StudyData, known: Sensitivities, settings: DiagnosisSettings = DEFAULT) -> LinearLayout:
-    """The linear layout of planned runs with known sensitivities, with the candidates that a diagnosis would have."""
+def competing(
+    study: StudyData, known: Sensitivities, settings: DiagnosisSettings = DEFAULT
+) -> tuple[Members, Sensitivities]:
+    """The candidates that a diagnosis of planned runs would have, and sensitivities to them."""
     everywhere = catalogue_candidates(study)
     runs = [known.drives[number].name for number in known.fitted]
     in_one_run = in_single_runs(study, everywhere, runs) if settings.odd_run_share else ()
     of_single_runs = [unknown for each in in_one_run for unknown in (*each.amplitudes, *each.presence)]
     known = known.in_single_runs(of_single_runs)
     candidates, _ = simulated((*everywhere, *in_one_run), known.failed)
-    known = known.without(known.failed)
+    return candidates, known.without(known.failed)
+
+
+def linear_layout(study: StudyData, known: Sensitivities, settings: DiagnosisSettings = DEFAULT) -> LinearLayout:
+    """The linear layout of planned runs with known sensitivities, with the candidates that a diagnosis would have."""
+    candidates, known = competing(study, known, settings)
     card = study.card.diagnosis
     prior = SetPrior(candidates, card.effects_expected, settings.size_shares, settings.odd_run_share)
     unknown_heat = patches(study, settings)

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import partial
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +17,7 @@ from tyrefem.diagnose.inference.evidence import posterior
 from tyrefem.diagnose.layout.linear_layout import LinearLayout
 from tyrefem.diagnose.unknowns.candidates import Members
 from tyrefem.diagnose.unknowns.unknown import Unknown
-from tyrefem.diagnose.verdicts.verdict import IDENTIFIED
+from tyrefem.diagnose.verdicts.verdict import IDENTIFIED, Judgement
 
 Array = NDArray[np.float64]
 #: Probabilities that an effect acts are kept from this one on.
@@ -24,7 +26,7 @@ KEPT = 0.005
 
 @dataclass(frozen=True, eq=False)
 class QuickCase(Brief):
-    """A cause drawn from the priors, and what the linear diagnosis says.
+    """A cause drawn from the priors, and what the diagnosis says.
 
     Parameters
     ----------
@@ -59,6 +61,13 @@ class QuickCase(Brief):
         """Whether the verdict "identified" names effects that all act."""
         return self.verdict == IDENTIFIED and self.right
 
+    @classmethod
+    def of_row(cls, row: Mapping[str, Any]) -> QuickCase:
+        """The case of a row of a JSON file, in which NaN is null."""
+        values: dict[str, Any] = {name: tuple(each) if isinstance(each, list) else each for name, each in row.items()}
+        values["inclusion"] = tuple((share, acts) for share, acts in row["inclusion"])
+        return cls(**values | {name: np.nan for name in ("base_rank", "p_value") if row[name] is None})
+
     def size_at(self, threshold: float) -> int:
         """Number of sets in the conformal set with a threshold."""
         before = np.cumsum((0.0, *self.leading[:-1]))
@@ -66,33 +75,47 @@ class QuickCase(Brief):
 
 
 @dataclass(frozen=True, eq=False)
-class DrawnReadings(Brief):
-    """Readings drawn from the priors: ``place`` of the true set in `LinearLayout.sets`, -1 for heat of unknown origin.
+class DrawnCause(Brief):
+    """A cause drawn from the priors.
 
-    ``values``: x of base numbers, sensors and amplitudes. ``fitted`` (n,), ``held_out`` (m,): whitened readings.
+    Parameters
+    ----------
+    place, members : its set in `LinearLayout.sets`; -1 and empty for heat of unknown origin.
+    values : x of base numbers, sensors and amplitudes.
+    heat : (p,) heat of unknown origin over its prior sd, in the order of `LinearLayout.heat`; empty: none.
     """
 
     place: int
+    members: Members
     values: dict[Unknown, float]
-    fitted: Array
-    held_out: Array
+    heat: Array
+
+    @property
+    def signal(self) -> dict[Unknown, float]:
+        """The values, and 1 for effects without an amplitude."""
+        return self.values | {unknown: 1.0 for member in self.members for unknown in member.presence}
 
 
-def drawn(layout: LinearLayout, rng: np.random.Generator) -> DrawnReadings:
-    """A set from its prior, amplitudes, base numbers and sensors from theirs (cut to the bounds), and noise."""
+def drawn(layout: LinearLayout, rng: np.random.Generator) -> DrawnCause:
+    """A set from its prior; amplitudes, base numbers and sensors from theirs (cut to the bounds)."""
     design, count = layout.design, len(layout.sets)
     place = int(rng.choice(count + 1, p=np.exp(layout.log_prior)))
     members: Members = layout.sets[place] if place < count else ()
-    nuisance = design.unknowns[: design.nuisance]
-    values = {unknown: within(unknown, rng) for unknown in nuisance}
+    values = {unknown: within(unknown, rng) for unknown in design.unknowns[: design.nuisance]}
     values |= {unknown: within(unknown, rng) for member in members for unknown in member.amplitudes}
-    signal = values | {unknown: 1.0 for member in members for unknown in member.presence}
-    columns, x = design.columns(tuple(signal)), np.array(list(signal.values()))
-    readings = [J[:, columns] @ x + rng.normal(size=len(J)) for J in (design.jacobian, layout.held_out)]
-    if place == count:
-        z = layout.heat_sd * rng.normal(size=len(layout.heat_sd))
-        readings = [readings[0] + layout.heat @ z, readings[1] + layout.heat_held_out @ z]
-    return DrawnReadings(place if place < count else -1, values, readings[0], readings[1])
+    heat = rng.normal(size=len(layout.heat_sd)) if place == count else np.zeros(0)
+    return DrawnCause(place if place < count else -1, members, values, heat)
+
+
+def readings(layout: LinearLayout, cause: DrawnCause, rng: np.random.Generator) -> tuple[Array, Array]:
+    """Whitened readings of a cause with noise, by the linear model: fitted (n,) and held out (m,)."""
+    signal = cause.signal
+    columns, x = layout.design.columns(tuple(signal)), np.array(list(signal.values()))
+    fitted, held_out = (J[:, columns] @ x + rng.normal(size=len(J)) for J in (layout.design.jacobian, layout.held_out))
+    if len(cause.heat):
+        z = layout.heat_sd * cause.heat
+        fitted, held_out = fitted + layout.heat @ z, held_out + layout.heat_held_out @ z
+    return fitted, held_out
 
 
 def within(unknown: Unknown, rng: np.random.Generator) -> float:
@@ -103,25 +126,38 @@ def within(unknown: Unknown, rng: np.random.Generator) -> float:
 
 
 def quick_case(layout: LinearLayout, rng: np.random.Generator) -> QuickCase:
-    """Draw a cause and its readings, and judge them."""
-    hidden = drawn(layout, rng)
-    judgement = layout.judge(hidden.fitted, hidden.held_out)
-    outside = hidden.place < 0
-    members = () if outside else layout.sets[hidden.place]
-    names, best = {member.key for member in members}, judgement.best
+    """Draw a cause and its readings, and judge them, all in the linear model."""
+    cause = drawn(layout, rng)
+    fitted, held_out = readings(layout, cause, rng)
+    return judged_case(layout, cause, layout.judge(fitted, held_out), partial(layout.fit, fitted, np.zeros(0)), rng)
+
+
+def judged_case(
+    layout: LinearLayout,
+    cause: DrawnCause,
+    judgement: Judgement,
+    fit_of: Callable[[Members], FittedSet],
+    rng: np.random.Generator,
+) -> QuickCase:
+    """What a judgement says of a drawn cause. ``fit_of``: set -> its fit, for the ranks of true values.
+
+    A true set that was not ranked has probability 0, behind all others.
+    """
+    outside, names, best = cause.place < 0, {member.key for member in cause.members}, judgement.best
     true_set = next(
-        entry for entry in judgement.ranking if entry.outside == outside and {m.key for m in entry.members} == names
+        (row for row in judgement.ranking if row.outside == outside and {m.key for m in row.members} == names), None
     )
     named = {member.key for member in best.members}
     right = named <= names if named else best is true_set
     ranks: tuple[float, ...] = ()
     base_rank = p_value = float("nan")
     if not outside:
-        fit = layout.fit(hidden.fitted, np.zeros(0), members)
-        amplitudes = [unknown for member in members for unknown in member.amplitudes]
+        fit = fit_of(cause.members)
+        amplitudes = [unknown for member in cause.members for unknown in member.amplitudes]
         base = layout.design.unknowns[int(rng.integers(layout.design.nuisance))]
-        *of_amplitudes, base_rank = posterior_ranks(fit, hidden.values, [*amplitudes, base])
+        *of_amplitudes, base_rank = posterior_ranks(fit, cause.values, [*amplitudes, base])
         ranks, p_value = tuple(of_amplitudes), fit.p_value
+    ahead = judgement.ranking if true_set is None else [r for r in judgement.ranking if r.score > true_set.score]
     return QuickCase(
         tuple(sorted(names)),
         outside,
@@ -129,10 +165,10 @@ def quick_case(layout: LinearLayout, rng: np.random.Generator) -> QuickCase:
         best.key,
         judgement.probability,
         right,
-        true_set.probability,
-        sum(entry.probability for entry in judgement.ranking if entry.score > true_set.score),
+        0.0 if true_set is None else true_set.probability,
+        sum(row.probability for row in ahead),
         bool(best.members) or best.outside,
-        tuple(entry.probability for entry in judgement.ranking if entry.probability > 1e-6),
+        tuple(row.probability for row in judgement.ranking if row.probability > 1e-6),
         tuple((share, key in names) for key, share in judgement.named.items() if share >= KEPT),
         ranks,
         base_rank,
