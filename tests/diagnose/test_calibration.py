@@ -37,10 +37,14 @@ BOTH = Candidate("both", (), tuple(replace(effect(name).unknowns[0], effect="bot
 
 
 def layout(
-    shapes: dict[str, Any], candidates: Members, settings: DiagnosisSettings = DEFAULT, heat: float = 0.0
+    shapes: dict[str, Any],
+    candidates: Members,
+    settings: DiagnosisSettings = DEFAULT,
+    heat: float = 0.0,
+    stated: Unknown = STATED,
 ) -> LinearLayout:
     """Readings of a base number and the candidates' unknowns by key; half as many readings are held out."""
-    unknowns = (STATED, *(unknown for each in candidates for unknown in each.unknowns))
+    unknowns = (stated, *(unknown for each in candidates for unknown in each.unknowns))
     J = np.column_stack([5.0 * np.sqrt(T), *(shapes[unknown.key] for unknown in unknowns[1:])])
     patches = heat * np.column_stack([np.sin(9 * T), np.cos(9 * T)])
     prior = SetPrior(candidates, 0.5, settings.size_shares)
@@ -62,12 +66,13 @@ def alike() -> LinearLayout:
     return layout(ALIKE, tuple(effect(name) for name in ALIKE), replace(DEFAULT, largest=2), heat=0.5)
 
 
-def test_evidences_are_those_of_the_linear_model() -> None:
-    rng = np.random.default_rng(1)
+@pytest.mark.parametrize("low", [-math.inf, 0.05])
+def test_evidences_are_those_of_the_linear_model(low: float) -> None:
+    rng, stated = np.random.default_rng(1), replace(STATED, low=low)
     candidates = (effect("first"), effect("bounded", 1.0, low=0.0), PRESENT, replace(PRESENT, name="swap-2",
         unknowns=(Unknown("effects.swap-2", 1.0, 0.0, 1.0, "swap-2"),)), BOTH)  # fmt: skip
     shapes = {unknown.key: rng.normal(size=len(T)) for each in candidates for unknown in each.unknowns}
-    of_layout = layout(shapes, candidates, heat=2.0)
+    of_layout = layout(shapes, candidates, heat=2.0, stated=stated)
     data = 2.0 * rng.normal(size=len(T))
     linear = LinearModel(of_layout.design, data)
     expected = [linear.log_evidence(members) + of_layout.prior(members) for members in of_layout.sets]
@@ -75,8 +80,28 @@ def test_evidences_are_those_of_the_linear_model() -> None:
     assert len(of_layout.sets) == 1 + 5 + 10
     assert scores[:-1] - scores[0] == pytest.approx(np.array(expected) - expected[0], abs=1e-9)
     J, wide = np.hstack([of_layout.design.jacobian[:, :1], of_layout.heat]), np.full(3, np.inf)
-    of_heat = posterior(J.T @ J, J.T @ data, np.array([STATED.sd, 1.0, 1.0]), -wide, wide).log_evidence
+    lowest = np.array([low, -np.inf, -np.inf])
+    of_heat = posterior(J.T @ J, J.T @ data, np.array([stated.sd, 1.0, 1.0]), lowest, wide).log_evidence
     assert scores[-1] - scores[0] == pytest.approx(of_heat + math.log(0.025) - expected[0], abs=1e-9)
+
+
+def test_the_bounds_of_base_numbers_count_in_the_evidence() -> None:
+    # The base number's best value lies beyond its bound unless an effect that resembles it acts.
+    stated = replace(STATED, high=0.05)
+    shapes = {"first": 5.0 * T**0.6, "second": np.sin(6 * T)}
+    candidates = tuple(effect(name) for name in shapes)
+    of_layout = layout(shapes, candidates, stated=stated)
+    data = of_layout.design.jacobian @ np.array([0.04, 1.0, 0.0]) + np.random.default_rng(7).normal(size=len(T))
+    linear = LinearModel(of_layout.design, data)
+    for members in [(), candidates[:1], candidates[1:], candidates]:
+        unknowns = [stated, *(each.amplitudes[0] for each in members)]
+        J = of_layout.design.jacobian[:, of_layout.design.columns(unknowns)]
+        sd, low, high = (np.array([getattr(each, name) for each in unknowns]) for name in ("sd", "low", "high"))
+        expected = posterior(J.T @ J, J.T @ data, sd, low, high).log_evidence
+        assert linear.log_evidence(members) == pytest.approx(expected, abs=1e-9), members
+    gain = linear.log_evidence(candidates[:1]) - linear.log_evidence(())
+    unbounded = LinearModel(layout(shapes, candidates).design, data)
+    assert gain > unbounded.log_evidence(candidates[:1]) - unbounded.log_evidence(()) + 1.0
 
 
 def test_the_probability_of_one_effect_is_its_closed_form() -> None:

@@ -16,6 +16,7 @@ from tyrefem.diagnose.amend import Change, amended, changes
 from tyrefem.diagnose.beside.best_fit import fit_beside, not_asked_for
 from tyrefem.diagnose.beside.free_heat import free_heat
 from tyrefem.diagnose.beside.law_trials import LawTrial, law_trials
+from tyrefem.diagnose.beside.ranked_beside import nearest
 from tyrefem.diagnose.beside.ranking import robustness
 from tyrefem.diagnose.beside.robustness import Robustness
 from tyrefem.diagnose.beside.strain_laws import beside_strain_laws
@@ -322,9 +323,12 @@ class Searched(Brief):
         return self.fits[()]
 
     def fit_of(self, members: Members) -> FittedSet:
-        """The fit of a set, made if there is none."""
+        """The fit of a set, made if there is none: from that of its best part near the data, else from x = 0."""
         if members not in self.fits:
-            (first,) = first_fits(self.problem.residuals, self.problem.predictions, [members])
+            close = {part: fit for part, fit in self.fits.items() if fit.close}
+            start = nearest(close, members, lambda part: self.problem.score(close[part]))
+            starts = {} if start is None else {members: start}
+            (first,) = first_fits(self.problem.residuals, self.problem.predictions, [members], starts)
             self.fits[members] = self.problem.settled_fit(first)
         return self.fits[members]
 

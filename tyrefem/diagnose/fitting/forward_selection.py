@@ -22,7 +22,8 @@ class ForwardSelection:
     """Sets grow by one effect at a time from sets that explain the data.
 
     1. The empty set is fitted. If it nearly explains the data, the linear model about this fit ranks all effects and
-       pairs. Otherwise the linear model about x = 0 ranks them, and the best effects are fitted with the full model.
+       pairs. Unless noise explains what it leaves, the linear model about x = 0 ranks them too, and the best effects
+       are fitted with the full model from there: base numbers that imitate an effect may hide it.
     2. From every good fit, the linear model about it ranks the sets with one more effect. The best sets are fitted.
     3. At the end every subset of the best set is fitted (backward check).
 
@@ -43,10 +44,11 @@ class ForwardSelection:
         singles, pairs = (progress.estimated(size) for size in (1, 2))
         # Two effects that cancel each other may both seem weak alone, so the members of the best pair are fitted too.
         ahead = [(member,) for member in (pairs[0] if pairs else ())]
-        if progress.fits[()].close:
+        none = progress.fits[()]
+        if none.close:
             progress.extend_none()
-        else:
-            progress.fit([*singles[: settings.singles], *ahead])
+        if not none.close or none.p_value < settings.usual_p:
+            progress.fit([*singles[: settings.singles], *ahead], from_origin=True)
         batches = 0
         outside = problem.outside(progress.fits[()]) if problem.outside else -np.inf
         while len(progress.fits) < settings.most_sets:
@@ -93,10 +95,13 @@ class _Progress:
         sets = (members for members in self._estimate if len(members) == size)
         return sorted(sets, key=lambda members: -self._estimate[members][0])
 
-    def fit(self, sets: Iterable[Members]) -> None:
-        """Fit sets, continue the leading fits, and estimate the sets that add one effect to a good fit."""
+    def fit(self, sets: Iterable[Members], *, from_origin: bool = False) -> None:
+        """Fit sets, continue the leading fits, and estimate the sets that add one effect to a good fit.
+
+        ``from_origin``: all from x = 0, none from the fit of a part.
+        """
         wanted = [members for members in dict.fromkeys(sets) if members not in self.fits]
-        self._take(self.problem.fitted(wanted, self._starts(wanted)))
+        self._take(self.problem.fitted(wanted, {} if from_origin else self._starts(wanted)))
         # A continued fit gives better estimates of the sets that add to it.
         for members in dict.fromkeys((*wanted, *self._continue_leading())):
             good = self.score(members) > self.top - self.settings.far_score

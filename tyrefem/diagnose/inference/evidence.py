@@ -104,6 +104,23 @@ def _held(matrix: Array, right: Array, z: Array, held: NDArray[np.bool_]) -> Arr
     return result
 
 
+def bounds_mass(mean: Array, spread: Array, low: Array, high: Array) -> Array:
+    """ln of the posterior mass within bounds over the prior's, for posteriors N(mean, spread^2) and priors N(0, 1).
+
+    >>> float(bounds_mass(np.array(-3.0), np.array(0.5), np.array(-1.0), np.array(np.inf)).round(2))    # 4 sd beyond
+    -10.19
+    """
+    return _log_masses((low - mean) / spread, (high - mean) / spread) - _log_masses(low, high)
+
+
+def _log_masses(low: Array, high: Array) -> Array:
+    """ln P(low < x < high) of a standard normal, stable in the tails."""
+    flip = low > 0
+    low, high = np.where(flip, -high, low), np.where(flip, -low, high)
+    upper = log_ndtr(high)
+    return np.asarray(upper + np.log1p(-np.exp(np.minimum(log_ndtr(low) - upper, -1e-300))))
+
+
 def _log_mass(low: float, high: float) -> float:
     """ln P(low < x < high) of a standard normal, stable in the tails."""
     if low > 0:

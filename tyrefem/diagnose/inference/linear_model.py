@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
-from tyrefem.diagnose.inference.evidence import posterior
+from tyrefem.diagnose.inference.evidence import bounds_mass, posterior
 from tyrefem.diagnose.unknowns.candidates import Members
 from tyrefem.diagnose.unknowns.unknown import Unknown
 
@@ -53,6 +53,22 @@ class DesignMatrix(Brief):
         n = self.nuisance
         sd = self.sd[:n]
         return np.asarray(np.linalg.inv(np.eye(n) + self.gram[:n, :n] * sd[:, None] * sd[None, :]) * np.outer(sd, sd))
+
+    @cached_property
+    def bounded(self) -> NDArray[np.intp]:
+        """Columns of the nuisance unknowns that have bounds."""
+        nuisance = self.unknowns[: self.nuisance]
+        return np.flatnonzero([np.isfinite(unknown.low) or np.isfinite(unknown.high) for unknown in nuisance])
+
+    def nuisance_mass(self, mean: Array, variance: Array) -> Array:
+        """(...) ln of the mass of `bounded` unknowns within their bounds, over that of their priors.
+
+        ``mean``, ``variance`` (..., n_bounded): of their posterior without bounds.
+        """
+        limits = np.array([(self.unknowns[i].low, self.unknowns[i].high) for i in self.bounded]).reshape(-1, 2)
+        sd = self.sd[self.bounded]
+        low, high = (limits / sd[:, None]).T
+        return np.asarray(bounds_mass(mean / sd, np.sqrt(variance) / sd, low, high).sum(axis=-1))
 
     @cached_property
     def marginal(self) -> tuple[Array, Array, float]:
@@ -103,14 +119,23 @@ class LinearModel(Brief):
             overlap = overlap - design.gram[:, present].sum(axis=1)
             fixed = float(self.overlap[present].sum() - design.gram[np.ix_(present, present)].sum() / 2)
         gram, projection, half = design.marginal
-        of_nuisance = fixed - half + float(overlap[:n] @ design.inverse @ overlap[:n]) / 2
+        mean, at_bounds = design.inverse @ overlap[:n], design.bounded
+        of_nuisance = fixed - half + float(overlap[:n] @ mean) / 2
+        variance = np.diag(design.inverse)[at_bounds]
         unknowns = [unknown for member in members for unknown in member.amplitudes]
         if not unknowns:
-            return of_nuisance
+            return of_nuisance + float(design.nuisance_mass(mean[at_bounds], variance))
         at = design.columns(unknowns) - n
         limits = np.array([(unknown.low, unknown.high) for unknown in unknowns])
-        reduced = overlap[n:][at] - projection[at] @ overlap[:n]
-        return of_nuisance + posterior(gram[np.ix_(at, at)], reduced, design.sd[n:][at], *limits.T).log_evidence
+        reduced, sd = overlap[n:][at] - projection[at] @ overlap[:n], design.sd[n:][at]
+        solved = posterior(gram[np.ix_(at, at)], reduced, sd, *limits.T)
+        # The bounds of base numbers and sensors count as those of amplitudes do, from the posterior without any.
+        rows, wide = projection[np.ix_(at, at_bounds)], solved.covariance
+        free = wide @ reduced
+        mass = design.nuisance_mass(
+            mean[at_bounds] - free @ rows, variance + np.einsum("in,ij,jn->n", rows, wide, rows)
+        )
+        return of_nuisance + solved.log_evidence + float(mass)
 
     def least_misfit(self, members: Members) -> float:
         """min |d - J x|^2 + |x/sd|^2 over the members' amplitudes and the nuisance."""

@@ -10,13 +10,13 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import cho_factor, cho_solve
-from scipy.special import log_ndtr
 
 from tyrefem.brief import Brief
 from tyrefem.diagnose.data.sensitivities import Sensitivities
 from tyrefem.diagnose.fitting.fits import FittedSet, predictive
 from tyrefem.diagnose.fitting.gauss_newton import initial_state
 from tyrefem.diagnose.fitting.selection import ScoredSet, sets_of
+from tyrefem.diagnose.inference.evidence import bounds_mass
 from tyrefem.diagnose.inference.linear_model import DesignMatrix, LinearModel
 from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
 from tyrefem.diagnose.unknowns.candidates import Members, SetPrior, catalogue_candidates, in_single_runs, simulated
@@ -145,23 +145,33 @@ class LinearLayout(Brief):
         """ln evidence of every set, heat last, relative to no effect; as `LinearModel.log_evidence`."""
         projected, gram = self._projected
         first, second, columns, amplitude = self._columns
+        rows = self._bounded_nuisance[0][columns]
         overlap = (projected @ data)[columns]
         gram = gram[np.ix_(columns, columns)]
         unknowns = [(*each.amplitudes, *each.presence)[0] for each in self.candidates]
         sd, low, high = (np.array([getattr(each, name) for each in unknowns]) for name in ("sd", "low", "high"))
         diagonal = np.diag(gram)
         result = np.zeros(len(self.sets) + 1)
+        #: By set, effects of a set on the bounded base numbers and sensors: shift of their means, added variance.
+        shift, spread = (np.zeros((len(self.sets) + 1, rows.shape[1])) for _ in range(2))
         size = (first >= 0).astype(int) + (second >= 0)
 
         def single(i: Array, b: Array) -> Array:
             """ln evidence of a single amplitude for overlaps b, or of a fixed signal."""
             a, s = 1 + sd[i] ** 2 * diagonal[i], sd[i]
             z = s * b / a
-            free = s * b * z / 2 - np.log(a) / 2 + bounded(z, 1 / np.sqrt(a), low[i] / s, high[i] / s)
+            free = s * b * z / 2 - np.log(a) / 2 + bounds_mass(z, 1 / np.sqrt(a), low[i] / s, high[i] / s)
             return np.where(amplitude[i], free, b - diagonal[i] / 2)
+
+        def moved(i: Array, b: Array) -> tuple[Array, Array]:
+            """Shift and variance of the bounded nuisance by a single amplitude, or by a fixed signal."""
+            a, s = 1 + sd[i] ** 2 * diagonal[i], sd[i]
+            x, variance = np.where(amplitude[i], s**2 * b / a, 1.0), np.where(amplitude[i], s**2 / a, 0.0)
+            return rows[i] * x[:, None], rows[i] ** 2 * variance[:, None]
 
         alone = np.flatnonzero(size == 1)
         result[alone] = single(first[alone], overlap[first[alone]])
+        shift[alone], spread[alone] = moved(first[alone], overlap[first[alone]])
         two = np.flatnonzero(size == 2)
         i, j = first[two], second[two]
         # A fixed signal is subtracted from the data; it comes first.
@@ -169,6 +179,8 @@ class LinearLayout(Brief):
         i, j = np.where(swap, j, i), np.where(swap, i, j)
         fixed = ~amplitude[i]
         result[two] = np.where(fixed, overlap[i] - diagonal[i] / 2 + single(j, overlap[j] - gram[i, j]), 0.0)
+        shift[two], spread[two] = moved(j, overlap[j] - gram[i, j])
+        shift[two] += rows[i]
         free = two[~fixed]
         i, j = i[~fixed], j[~fixed]
         a, b, c = 1 + sd[i] ** 2 * diagonal[i], 1 + sd[j] ** 2 * diagonal[j], sd[i] * sd[j] * gram[i, j]
@@ -176,8 +188,11 @@ class LinearLayout(Brief):
         u, v = sd[i] * overlap[i], sd[j] * overlap[j]
         z, w = (b * u - c * v) / det, (a * v - c * u) / det
         result[free] = (u * z + v * w) / 2 - np.log(det) / 2
-        result[free] += bounded(z, np.sqrt(b / det), low[i] / sd[i], high[i] / sd[i])
-        result[free] += bounded(w, np.sqrt(a / det), low[j] / sd[j], high[j] / sd[j])
+        result[free] += bounds_mass(z, np.sqrt(b / det), low[i] / sd[i], high[i] / sd[i])
+        result[free] += bounds_mass(w, np.sqrt(a / det), low[j] / sd[j], high[j] / sd[j])
+        of_i, of_j = rows[i] * sd[i][:, None], rows[j] * sd[j][:, None]
+        shift[free] = of_i * z[:, None] + of_j * w[:, None]
+        spread[free] = (of_i**2 * b[:, None] + of_j**2 * a[:, None] - 2 * of_i * of_j * c[:, None]) / det[:, None]
         if self._several:
             linear = LinearModel(self.design, data)
             none = linear.log_evidence(())
@@ -186,21 +201,35 @@ class LinearLayout(Brief):
         if math.isfinite(self.log_prior_heat):
             columns_of_heat, factor, half = self._of_heat
             right = columns_of_heat @ data
-            result[-1] = float(right @ cho_solve(factor, right)) / 2 - half
-        return result
+            z_heat = cho_solve(factor, right)
+            result[-1] = float(right @ z_heat) / 2 - half
+            of_heat = self._bounded_nuisance_of_heat
+            shift[-1] = of_heat.T @ z_heat
+            spread[-1] = np.einsum("pn,pn->n", of_heat, cho_solve(factor, of_heat))
+        masses = self._nuisance_mass(data, shift, spread)
+        if self._several:
+            # These have the mass in their evidence.
+            masses[self._several] = masses[0]
+        return result + masses - masses[0]
 
+    @cached_property
+    def _bounded_nuisance(self) -> tuple[Array, NDArray[np.intp]]:
+        """(k - nuisance, n) change of the bounded base numbers and sensors by an effect; numbers of their columns."""
+        at = self.design.bounded
+        return np.asarray(self.design.marginal[1][:, at]), at
 
-def bounded(z: Array, spread: Array, low: Array, high: Array) -> Array:
-    """ln of the posterior mass within bounds over the prior's, for posteriors N(z, spread^2) and priors N(0, 1)."""
-    return _log_mass((low - z) / spread, (high - z) / spread) - _log_mass(low, high)
+    @cached_property
+    def _bounded_nuisance_of_heat(self) -> Array:
+        """(p, n) change of the bounded base numbers and sensors by heat of unknown origin, times its sd."""
+        n, at = self.design.nuisance, self.design.bounded
+        return np.asarray((self.heat * self.heat_sd).T @ self.design.jacobian[:, :n] @ self.design.inverse[:, at])
 
-
-def _log_mass(low: Array, high: Array) -> Array:
-    """ln P(low < x < high) of a standard normal, stable in the tails."""
-    flip = low > 0
-    low, high = np.where(flip, -high, low), np.where(flip, -low, high)
-    upper = log_ndtr(high)
-    return np.asarray(upper + np.log1p(-np.exp(np.minimum(log_ndtr(low) - upper, -1e-300))))
+    def _nuisance_mass(self, data: Array, shift: Array, variance: Array) -> Array:
+        """(n_sets,) ln of the mass of base numbers and sensors within their bounds, over that of their priors."""
+        design, n = self.design, self.design.nuisance
+        at = design.bounded
+        mean = (design.inverse @ (design.jacobian[:, :n].T @ data))[at] - shift
+        return design.nuisance_mass(mean, np.diag(design.inverse)[at] + variance)
 
 
 def competing(
