@@ -101,6 +101,33 @@ def test_effects_that_hide_each_other_are_found_by_the_exhaustive_search_alone()
     assert forward[0].fit is not None
 
 
+def test_a_base_number_that_imitates_an_effect_does_not_hide_it() -> None:
+    # The base number bends: at 0.3 it looks like the effect at 1.6 but for a ripple, at 0.15 it does not. About the fit
+    # of no effect the linear model sees nothing to gain; about x = 0 it does.
+    times = np.linspace(0.0, 1.0, 400)
+    bend, ripple = 40.0 * np.sin(9.0 * times), 0.75 * np.cos(40.0 * np.pi * times)
+    imitated = 12.0 * times + 0.3**2 * bend
+    shapes = {"strong": (imitated + ripple) / 1.6, "idle": np.sin(25.0 * times)}
+
+    def law(values: Mapping[str, float]) -> Array:
+        base = values.get(STATED.key, 0.0)
+        heat = 40.0 * base * times + base**2 * bend
+        return np.asarray(heat + sum(values.get(name, 0.0) * shape for name, shape in shapes.items()))
+
+    candidates = tuple(effect(name) for name in shapes)
+    made = case(law, law({"strong": 1.6}) + np.random.default_rng(2).normal(size=400), candidates)
+    problem = problem_of(made, candidates, CRITERIA[0])
+    (none,) = problem.continued(problem.fitted([()], {}))
+    assert none.close
+    assert none.p_value < problem.settings.usual_p
+    about = problem.linear_about(none, candidates)
+    assert about.log_evidence(candidates[:1]) < about.log_evidence(())
+    scored = ForwardSelection().search(problem)
+    assert names(scored) == {"strong"}
+    assert scored[0].fit is not None
+    assert scored[0].fit.p_value > 0.05
+
+
 def test_too_many_sets_are_refused_in_one_sentence() -> None:
     candidates = tuple(effect(f"effect-{number}") for number in range(30))
     study, settings = tf.study("nasa-22x5.5-8pr"), DiagnosisSettings(largest=2)
