@@ -12,8 +12,8 @@ from formula import STATED, Array, Case, case, effect
 import tyrefem as tf
 from tyrefem.diagnose.fitting.criterion import BIC, Criterion, LogEvidence
 from tyrefem.diagnose.fitting.exhaustive import Exhaustive
-from tyrefem.diagnose.fitting.forward_selection import ForwardSelection
-from tyrefem.diagnose.fitting.selection import ScoredSet, SelectionProblem, Strategy, sets_of
+from tyrefem.diagnose.fitting.forward_selection import ForwardSelection, _Progress
+from tyrefem.diagnose.fitting.selection import ScoredSet, SelectionProblem, Strategy, rivals_of_names, sets_of
 from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
 from tyrefem.diagnose.unknowns.candidates import Members, SetPrior
 from tyrefem.errors import InputError
@@ -46,9 +46,10 @@ def searched(
     strategy: Strategy,
     criterion: Criterion = CRITERIA[0],
     largest: int = 2,
+    **settings: Any,
 ) -> list[ScoredSet]:
     candidates = tuple(effect(name) for name in shapes)
-    made = case(linear_law(shapes), measured, candidates, DiagnosisSettings(largest=largest))
+    made = case(linear_law(shapes), measured, candidates, DiagnosisSettings(largest=largest, **settings))
     return strategy.search(problem_of(made, candidates, criterion))
 
 
@@ -89,16 +90,18 @@ def hiding() -> dict[str, Array]:
     return {"warming": large + left, "cooling": left - large, **alike}
 
 
-def test_effects_that_hide_each_other_are_found_by_the_exhaustive_search_alone() -> None:
+def test_effects_that_hide_each_other_are_found_where_another_one_would_be_named() -> None:
     shapes = hiding()
     noise = np.random.default_rng(6).normal(size=N)
     measured = linear_law(shapes)({"warming": 4.0, "cooling": 4.0}) + noise
     forward, exhaustive = (searched(shapes, measured, strategy) for strategy in STRATEGIES)
-    assert names(exhaustive) == {"warming", "cooling"}
-    assert names(forward) != {"warming", "cooling"}
-    assert exhaustive[0].score > forward[0].score + 10
+    assert names(exhaustive) == names(forward) == {"warming", "cooling"}
+    # Growing sets alone miss the pair, each of which explains little.
+    grown = searched(shapes, measured, ForwardSelection(), name_rounds=0)
+    assert names(grown) != {"warming", "cooling"}
+    assert exhaustive[0].score > grown[0].score + 10
     # What was not fitted does not stand above what was.
-    assert forward[0].fit is not None
+    assert grown[0].fit is not None
 
 
 def test_a_base_number_that_imitates_an_effect_does_not_hide_it() -> None:
@@ -126,6 +129,31 @@ def test_a_base_number_that_imitates_an_effect_does_not_hide_it() -> None:
     assert names(scored) == {"strong"}
     assert scored[0].fit is not None
     assert scored[0].fit.p_value > 0.05
+
+
+def test_a_name_is_held_against_the_best_set_without_it() -> None:
+    # The true effect bends upwards: its slope at 0 promises 14 nats less than an imitation by another effect.
+    times = np.linspace(0.0, 1.0, 400)
+    shape, ripple = np.sin(9.0 * times), 0.08 * np.cos(40.0 * np.pi * times)
+
+    def law(values: Mapping[str, float]) -> Array:
+        curved, plain = (values.get(name, 0.0) for name in ("curved", "plain"))
+        heat = 5.0 * values.get(STATED.key, 0.0) * times
+        return np.asarray(heat + (0.3 * curved + 0.9 * curved**2) * shape + plain * (shape + ripple))
+
+    candidates = tuple(effect(name, low=0.0) for name in ("curved", "plain"))
+    measured = law({"curved": 2.0}) + np.random.default_rng(3).normal(size=400)
+    for rounds, found in ((0, "plain"), (2, "curved")):
+        made = case(law, measured, candidates, DiagnosisSettings(name_rounds=rounds))
+        prior = SetPrior(candidates, 0.5)
+        problem = SelectionProblem(made.residuals, made.predictions, candidates, prior, CRITERIA[0])
+        # As if no other set had been worth a fit.
+        progress = _Progress(problem)
+        progress.fit([(), candidates[1:]])
+        for _ in range(rounds):
+            rivals = rivals_of_names(progress.scored(), problem.settings)
+            progress.fit(rivals, {members: start for members, start in rivals.items() if start is not None})
+        assert names(progress.scored()) == {found}
 
 
 def test_too_many_sets_are_refused_in_one_sentence() -> None:

@@ -17,7 +17,7 @@ from tyrefem.diagnose.beside.discrepancy import (
 from tyrefem.diagnose.data.residuals import Residuals
 from tyrefem.diagnose.fitting.fits import FittedSet, continued, first_fits, fitted_beside, linear_about, state_beside
 from tyrefem.diagnose.fitting.gauss_newton import FitState, initial_state
-from tyrefem.diagnose.fitting.selection import ScoredSet, SelectionProblem
+from tyrefem.diagnose.fitting.selection import ScoredSet, SelectionProblem, rivals_of_names
 from tyrefem.diagnose.inference.linear_model import LinearModel
 from tyrefem.diagnose.unknowns.candidates import Candidate, Members, separate
 
@@ -27,8 +27,6 @@ FAR = 60.0
 STRAIN, RENEWED = 2.5, 2
 #: A strain law whose fits keep a misfit above this times the number of readings is not searched for further sets.
 NEAR = 10.0
-#: The best set without an effect that would be named is fitted if its estimate is at most this far below, nats; rounds.
-NEAR_NAME, ROUNDS = 30.0, 2
 #: Beside a discrepancy of this size noise explains the misfit, so that no larger one is tried.
 USUAL_P = 0.01
 
@@ -163,53 +161,17 @@ class RankedBeside(Brief):
         leading = self.best.members
         if self._continue_ended() and self.best.members != leading:
             self._search()
-        for _ in range(ROUNDS):
-            leading, starts = self.best.members, self._rivals_of_names()
-            if not starts:
+        for _ in range(self.problem.settings.name_rounds):
+            leading = self.best.members
+            rivals = rivals_of_names(self.scored(), self.problem.settings)
+            starts = {rival: start or self._start(rival) for rival, start in rivals.items()}
+            known = {rival: start for rival, start in starts.items() if start is not None}
+            if not known:
                 break
-            self._take(first_fits(self.residuals, self.problem.predictions, list(starts), starts, self.problem._count))
+            self._take(first_fits(self.residuals, self.problem.predictions, list(known), known, self.problem._count))
             self._estimate()
             if self.best.members != leading:
                 self._search()
-
-    @property
-    def inclusion(self) -> dict[Candidate, float]:
-        """Effect -> probability that it acts, by fits and estimates."""
-        rows = self.scored()
-        scores = np.array([row.score for row in rows])
-        shares = np.exp(scores - np.logaddexp.reduce(scores))
-        acting: dict[Candidate, float] = {}
-        for row, share in zip(rows, shares, strict=True):
-            acting |= {member: acting.get(member, 0.0) + float(share) for member in row.members}
-        return acting
-
-    def _rivals_of_names(self) -> dict[Members, FittedSet]:
-        """The best sets without an effect that would be named, as far as they are only estimated -> starts of fits.
-
-        The linear model about a fit with an effect says little of a strong other one in its place: it was 18 nats off
-        for radiation in place of wind.
-        """
-        top = max(map(self.score, self.fits))
-        starts: dict[Members, FittedSet] = {}
-        for member, probability in self.inclusion.items():
-            if probability < self.problem.settings.named_probability:
-                continue
-            fitted = max((self.score(members) for members in self.fits if member not in members), default=-math.inf)
-            others = {members: value for members, value in self.estimates.items() if member not in members}
-            if not others:
-                continue
-            rival = max(others, key=others.__getitem__)
-            if others[rival] > max(fitted, top - NEAR_NAME):
-                start = self._in_place_of(member, rival) or self._start(rival)
-                starts |= {} if start is None else {rival: start}
-        return starts
-
-    def _in_place_of(self, member: Candidate, rival: Members) -> FittedSet | None:
-        """The best fit with ``member`` beside effects of ``rival`` only, without ``member``."""
-        if member.presence:
-            return None
-        fits = [members for members in self.fits if member in members and set(members) - {member} <= set(rival)]
-        return self.fits[max(fits, key=self.score)].without([member]) if fits else None
 
     def _continue_ended(self, *, parts: bool = True) -> bool:
         """Continue fits that ended on their way: the best one, no effect, and the best one's parts.

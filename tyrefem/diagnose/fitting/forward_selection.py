@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import itertools
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from tyrefem.diagnose.fitting.fits import FittedSet
-from tyrefem.diagnose.fitting.selection import ScoredSet, SelectionProblem, sets_of
+from tyrefem.diagnose.fitting.selection import ScoredSet, SelectionProblem, rivals_of_names, sets_of
 from tyrefem.diagnose.inference.linear_model import LinearModel
 from tyrefem.diagnose.settings import DiagnosisSettings
 from tyrefem.diagnose.unknowns.candidates import Members, separate
@@ -25,12 +25,13 @@ class ForwardSelection:
        pairs. Unless noise explains what it leaves, the linear model about x = 0 ranks them too, and the best effects
        are fitted with the full model from there: base numbers that imitate an effect may hide it.
     2. From every good fit, the linear model about it ranks the sets with one more effect. The best sets are fitted.
-    3. At the end every subset of the best set is fitted (backward check).
+    3. At the end every subset of the best set is fitted (backward check), and the best set without an effect that
+       would be named.
 
     The search ends early if a cause outside the catalogue is far ahead.
 
-    The search can miss two effects that explain the data only together, each alone much worse than other effects.
-    `tyrefem.diagnose.fitting.exhaustive.Exhaustive` does not miss them.
+    The search can miss two effects that explain the data only together, each alone much worse than other effects,
+    unless another one would be named. `tyrefem.diagnose.fitting.exhaustive.Exhaustive` does not miss them.
     """
 
     def check(self, study: StudyData, candidates: Members, settings: DiagnosisSettings) -> None:
@@ -48,7 +49,7 @@ class ForwardSelection:
         if none.close:
             progress.extend_none()
         if not none.close or none.p_value < settings.usual_p:
-            progress.fit([*singles[: settings.singles], *ahead], from_origin=True)
+            progress.fit([*singles[: settings.singles], *ahead], {})
         batches = 0
         outside = problem.outside(progress.fits[()]) if problem.outside else -np.inf
         while len(progress.fits) < settings.most_sets:
@@ -59,6 +60,11 @@ class ForwardSelection:
             if not sets:
                 break
             progress.fit(sets)
+        for _ in range(settings.name_rounds):
+            rivals = rivals_of_names(progress.scored(), settings)
+            if not rivals:
+                break
+            progress.fit(rivals, {members: start for members, start in rivals.items() if start is not None})
         return progress.scored()
 
 
@@ -95,13 +101,13 @@ class _Progress:
         sets = (members for members in self._estimate if len(members) == size)
         return sorted(sets, key=lambda members: -self._estimate[members][0])
 
-    def fit(self, sets: Iterable[Members], *, from_origin: bool = False) -> None:
+    def fit(self, sets: Iterable[Members], starts: Mapping[Members, FittedSet] | None = None) -> None:
         """Fit sets, continue the leading fits, and estimate the sets that add one effect to a good fit.
 
-        ``from_origin``: all from x = 0, none from the fit of a part.
+        ``starts``: of the fits, others begin at x = 0; None: fits of their best parts near the data.
         """
         wanted = [members for members in dict.fromkeys(sets) if members not in self.fits]
-        self._take(self.problem.fitted(wanted, {} if from_origin else self._starts(wanted)))
+        self._take(self.problem.fitted(wanted, self._starts(wanted) if starts is None else starts))
         # A continued fit gives better estimates of the sets that add to it.
         for members in dict.fromkeys((*wanted, *self._continue_leading())):
             good = self.score(members) > self.top - self.settings.far_score

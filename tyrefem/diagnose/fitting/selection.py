@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple, Protocol
 
+import numpy as np
+
 from tyrefem.brief import Brief
 from tyrefem.diagnose.data.residuals import Residuals
 from tyrefem.diagnose.fitting.criterion import Criterion
@@ -33,6 +35,34 @@ def sets_of(candidates: Members, size: int) -> Iterator[Members]:
     """All sets of ``size`` different effects, or of one effect in different runs."""
     combined = itertools.combinations(candidates, size)
     return (members for members in combined if all(separate(member, members[:i]) for i, member in enumerate(members)))
+
+
+def rivals_of_names(scored: Sequence[ScoredSet], settings: DiagnosisSettings) -> dict[Members, FittedSet | None]:
+    """The best sets without an effect that would be named, as far as they are only estimated -> starts of their fits.
+
+    A start is the best fit with that effect beside effects of the set only, without the effect; None without one. The
+    linear model about a fit with an effect says little of a strong other one in its place. ``scored``: all sets.
+    """
+    scores = np.array([row.score for row in scored])
+    shares = np.exp(scores - np.logaddexp.reduce(scores))
+    fitted = [row for row in scored if row.fit is not None]
+    top = max(row.score for row in fitted)
+    rivals: dict[Members, FittedSet | None] = {}
+    for member in dict.fromkeys(member for row in scored for member in row.members):
+        acts = np.array([member in row.members for row in scored])
+        estimated = [row for row in scored if row.fit is None and member not in row.members]
+        if shares[acts].sum() < settings.named_probability or not estimated:
+            continue
+        best = max(estimated, key=lambda row: row.score)
+        without = max((row.score for row in fitted if member not in row.members), default=-np.inf)
+        if best.score > max(without, top - settings.name_score):
+            others = {member, *best.members}
+            wholes = [
+                (row.score, row.fit) for row in fitted if member in row.members and others.issuperset(row.members)
+            ]
+            _, whole = max(wholes, key=lambda pair: pair[0], default=(0.0, None))
+            rivals[best.members] = None if whole is None or member.presence else whole.without([member])
+    return rivals
 
 
 @dataclass(frozen=True, eq=False)
