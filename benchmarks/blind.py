@@ -8,7 +8,7 @@ It has 8 histories, three runs and one that is held out.
 Prints a table for people and, as its last line, one JSON object with the rates. Interrupted, it goes on where it was.
 ``--records`` names a file of finished cases (a JSON object a line): they are not run again, and new ones are added when
 the program ends or is interrupted. Those behind docs/evidence/diagnosis.md are in benchmarks/records. ``--only`` runs
-some cases again, by number, in place of their records.
+some cases again, by number, in place of their records; without a number it runs none.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ def main() -> None:
     parser.add_argument("--workers", type=int, default=os.cpu_count() or 1)
     parser.add_argument("--truth", choices=("ordinary", "structural"), default="ordinary")
     parser.add_argument("--records", type=Path, help="File of finished cases, a JSON object a line.")
-    parser.add_argument("--only", type=int, nargs="+", help="Numbers of the cases to run, again if they are recorded.")
+    parser.add_argument("--only", type=int, nargs="*", help="Numbers of the cases to run, again if they are recorded.")
     parser.add_argument("--reduced", choices=("auto", "never"), default="auto")
     given = parser.parse_args()
     began = time.perf_counter()
