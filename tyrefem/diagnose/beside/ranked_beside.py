@@ -163,9 +163,9 @@ class RankedBeside(Brief):
             self._search()
         for _ in range(self.problem.settings.name_rounds):
             leading = self.best.members
-            rivals = rivals_of_names(self.scored(), self.problem.settings)
-            starts = {rival: start or self._start(rival) for rival, start in rivals.items()}
-            known = {rival: start for rival, start in starts.items() if start is not None}
+            starts = rivals_of_names(self.scored(), self.problem.settings)
+            starts = {members: start or self._start(members) for members, start in starts.items()}
+            known = {members: start for members, start in starts.items() if start is not None}
             if not known:
                 break
             self._take(first_fits(self.residuals, self.problem.predictions, list(known), known, self.problem._count))

@@ -61,10 +61,10 @@ class ForwardSelection:
                 break
             progress.fit(sets)
         for _ in range(settings.name_rounds):
-            rivals = rivals_of_names(progress.scored(), settings)
-            if not rivals:
+            starts = rivals_of_names(progress.scored(), settings)
+            if not starts:
                 break
-            progress.fit(rivals, {members: start for members, start in rivals.items() if start is not None})
+            progress.fit(starts, {members: start for members, start in starts.items() if start is not None})
         return progress.scored()
 
 

@@ -47,7 +47,7 @@ def rivals_of_names(scored: Sequence[ScoredSet], settings: DiagnosisSettings) ->
     shares = np.exp(scores - np.logaddexp.reduce(scores))
     fitted = [row for row in scored if row.fit is not None]
     top = max(row.score for row in fitted)
-    rivals: dict[Members, FittedSet | None] = {}
+    starts: dict[Members, FittedSet | None] = {}
     for member in dict.fromkeys(member for row in scored for member in row.members):
         acts = np.array([member in row.members for row in scored])
         estimated = [row for row in scored if row.fit is None and member not in row.members]
@@ -61,8 +61,8 @@ def rivals_of_names(scored: Sequence[ScoredSet], settings: DiagnosisSettings) ->
                 (row.score, row.fit) for row in fitted if member in row.members and others.issuperset(row.members)
             ]
             _, whole = max(wholes, key=lambda pair: pair[0], default=(0.0, None))
-            rivals[best.members] = None if whole is None or member.presence else whole.without([member])
-    return rivals
+            starts[best.members] = None if whole is None or member.presence else whole.without([member])
+    return starts
 
 
 @dataclass(frozen=True, eq=False)
