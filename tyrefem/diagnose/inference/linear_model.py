@@ -65,10 +65,15 @@ class DesignMatrix(Brief):
 
         ``mean``, ``variance`` (..., n_bounded): of their posterior without bounds.
         """
-        limits = np.array([(self.unknowns[i].low, self.unknowns[i].high) for i in self.bounded]).reshape(-1, 2)
-        sd = self.sd[self.bounded]
-        low, high = (limits / sd[:, None]).T
+        sd, (low, high) = self.sd[self.bounded], self._bounds
         return np.asarray(bounds_mass(mean / sd, np.sqrt(variance) / sd, low, high).sum(axis=-1))
+
+    @cached_property
+    def _bounds(self) -> tuple[Array, Array]:
+        """(n_bounded,) each: bounds of the `bounded` unknowns over their prior standard deviations."""
+        limits = np.array([(self.unknowns[i].low, self.unknowns[i].high) for i in self.bounded]).reshape(-1, 2)
+        low, high = limits.T / self.sd[self.bounded]
+        return low, high
 
     @cached_property
     def marginal(self) -> tuple[Array, Array, float]:

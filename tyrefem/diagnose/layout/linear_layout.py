@@ -145,14 +145,14 @@ class LinearLayout(Brief):
         """ln evidence of every set, heat last, relative to no effect; as `LinearModel.log_evidence`."""
         projected, gram = self._projected
         first, second, columns, amplitude = self._columns
-        rows = self._bounded_nuisance[0][columns]
+        rows = self._bounded_nuisance[columns]
         overlap = (projected @ data)[columns]
         gram = gram[np.ix_(columns, columns)]
         unknowns = [(*each.amplitudes, *each.presence)[0] for each in self.candidates]
         sd, low, high = (np.array([getattr(each, name) for each in unknowns]) for name in ("sd", "low", "high"))
         diagonal = np.diag(gram)
         result = np.zeros(len(self.sets) + 1)
-        #: By set, effects of a set on the bounded base numbers and sensors: shift of their means, added variance.
+        # By set, effects of a set on the bounded base numbers and sensors: shift of their means, added variance.
         shift, spread = (np.zeros((len(self.sets) + 1, rows.shape[1])) for _ in range(2))
         size = (first >= 0).astype(int) + (second >= 0)
 
@@ -213,10 +213,9 @@ class LinearLayout(Brief):
         return result + masses - masses[0]
 
     @cached_property
-    def _bounded_nuisance(self) -> tuple[Array, NDArray[np.intp]]:
-        """(k - nuisance, n) change of the bounded base numbers and sensors by an effect; numbers of their columns."""
-        at = self.design.bounded
-        return np.asarray(self.design.marginal[1][:, at]), at
+    def _bounded_nuisance(self) -> Array:
+        """(k - nuisance, n) change of the bounded base numbers and sensors by an effect."""
+        return np.asarray(self.design.marginal[1][:, self.design.bounded])
 
     @cached_property
     def _bounded_nuisance_of_heat(self) -> Array:
