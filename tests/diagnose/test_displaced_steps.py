@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import SimpleNamespace
 from typing import Any, cast
 
@@ -49,9 +49,9 @@ def test_moved_sensors_read_what_a_simulation_says(owner: tf.Study, at: float) -
     values = {each: at * each.sd for each in places}
     rng = np.random.default_rng(4)
     shifts = rng.uniform(-1e-3, 1e-3, (2, len(owner.stated_places), 2))
-    changes = model.displaced(0, values, shifts)
     names = list(owner.stated_places)
-    for change, shift in zip(changes, shifts, strict=True):
+    for shift in shifts:
+        change = model.displaced(0, values, shift)[0]
         by_name = dict(zip(names, shift.tolist(), strict=True))
         moved = {
             each: values[each] + by_name[dict(each.choice)["sensor"]][("along", "deeper").index(each.parameter.name)]
@@ -78,11 +78,12 @@ class Curve:
     def of(self, method: str, questions: Any) -> list[Array]:
         assert method == "displaced"
         self.asked += 1
-        return [self._displaced(values, shifts) for _, values, shifts in questions]
+        return [self._displaced(values, shift) for _, values, shift in questions]
 
-    def _displaced(self, values: Mapping[Unknown, float], shifts: Array) -> Array:
-        depth = values[self.place]
-        return np.array([self.reading(0.0, depth + shift) - self.reading(0.0, depth) for shift in shifts[:, 0, 1]])
+    def _displaced(self, values: Mapping[Unknown, float], shift: Array) -> Array:
+        here, there = (self.reading(0.0, values[self.place] + each) for each in (0.0, shift[0, 1]))
+        ahead = self.reading(0.0, values[self.place] + shift[0, 1] + 1e-8)
+        return np.array([there - here, np.zeros(N), (ahead - there) / 1e-8])
 
 
 def state_of(curve: Curve, run: MeasuredDrive) -> tuple[FitState, Any]:
@@ -128,6 +129,61 @@ def test_a_step_that_slopes_lead_astray_ends_where_the_readings_are(owner: tf.St
     assert taken.next_jacobian is not None
     np.testing.assert_allclose(taken.next_jacobian[:, 1], slope, rtol=0.05)
     np.testing.assert_allclose(taken.next_jacobian[:, 0], state.J[:, 0])
+
+
+def test_a_slope_at_the_end_of_the_wall_is_that_towards_the_inside(owner: tf.Study) -> None:
+    run = measured_drive(experiments(owner, None, ignore=(), rename=None)[0], owner)
+    model = ForwardModel(owner, (run.sampling,))
+    name = next(iter(owner.stated_places))
+    place, depth = (float(each) for each in owner.section.locate(np.array(owner.stated_places[name])))
+    rows = run.parts()[name]
+    size = model.base(0).tyre.mesh.size
+    # As far out as straight-sided elements allow.
+    end = float(owner.section.rubber_thickness(place)) - size**2 / 0.1 - depth
+
+    def displaced(deeper: float) -> Array:
+        shift = np.zeros((len(owner.stated_places), 2))
+        shift[0, 1] = deeper
+        return model.displaced(0, {}, shift)[:, rows]
+
+    inwards = (displaced(end)[0] - displaced(end - 1e-4)[0]) / 1e-4
+    assert np.abs(inwards).max() > 100.0
+    np.testing.assert_allclose(displaced(end)[2], inwards, rtol=0.1, atol=20.0)
+    np.testing.assert_array_equal(displaced(end + 1e-3)[0], displaced(end)[0])
+
+
+def test_a_sensor_whose_slope_is_wrong_does_not_hold_back_another(owner: tf.Study) -> None:
+    # Both sensors moved outwards; the second one stands where the wall ends: its slope says nothing of the way back.
+    places = [each for each in sensor_unknowns(owner, set(owner.sensors)) if each.key.endswith(".deeper")][:2]
+    names, over_time = [dict(each.choice)["sensor"] for each in places], np.linspace(0.2, 1.0, N)
+    straight, steep = 6e3 * over_time, 4e4 * over_time
+
+    def of(method: str, questions: Any) -> list[Array]:
+        (shift,) = (shift for _, _, shift in questions)
+        change = np.concatenate([straight * shift[0, 1], steep * min(shift[1, 1], 0.0)])
+        return [np.array([change, np.zeros(2 * N), np.concatenate([straight, np.zeros(N)])])]
+
+    wanted, beyond = 1e-3, 2.0 * places[1].sd
+    times = np.arange(float(N))
+    sensors = tuple(MeasuredSensor(name, times, 1.0, 0.0, 1.0, N, measured=np.zeros(N)) for name in names)
+    run = MeasuredDrive("run", {}, False, sensors)
+    jacobian = np.concatenate([straight, np.zeros(N)])[:, None] * [[1.0, 0.0]]
+    data = np.concatenate([straight * wanted, np.zeros(N)])
+    state = initial_state(
+        LinearModel(DesignMatrix(tuple(places), 2, jacobian), data), {0: np.zeros(2 * N)}, (), DEFAULT
+    )
+    state = replace(state, x=np.array([0.0, beyond])).proposed()
+    assert state.next_point[1] == pytest.approx(0.0, abs=1e-9)
+    residuals = SimpleNamespace(
+        study=SimpleNamespace(stated_places=dict.fromkeys(names, (0.0, 0.0)), card=SimpleNamespace(effects=())),
+        fitted=[0],
+        runs=(run,),
+        joined=np.concatenate,
+    )
+    predictions = cast(Any, SimpleNamespace(evaluations=SimpleNamespace(of=of)))
+    (taken,) = displaced_steps(cast(Any, [residuals]), predictions, [state])
+    assert taken.next_point[0] == pytest.approx(state.next_point[0], rel=1e-3)
+    assert taken.next_point[1] > 0.9 * beyond
 
 
 def test_without_a_simulation_at_the_point_a_step_follows_the_slopes(owner: tf.Study) -> None:

@@ -131,6 +131,32 @@ def test_a_base_number_that_imitates_an_effect_does_not_hide_it() -> None:
     assert scored[0].fit.p_value > 0.05
 
 
+def test_sensitivities_at_the_fit_of_no_effect_show_what_those_at_x_0_do_not() -> None:
+    # The base number imitates the effect at 0.3. There the effect acts in another way than at 0, as a worn tread does.
+    times = np.linspace(0.0, 1.0, 400)
+    bend, ripple = 40.0 * np.sin(9.0 * times), 0.75 * np.cos(40.0 * np.pi * times)
+    shape, coupled = (12.0 * times + 0.3**2 * bend + ripple) / 1.6, 0.3 * bend / 1.6
+
+    def law(values: Mapping[str, float]) -> Array:
+        base, strong = values.get(STATED.key, 0.0), values.get("strong", 0.0)
+        return np.asarray(40.0 * base * times + base**2 * bend + strong * (shape + base * coupled))
+
+    candidates = (effect("strong"), effect("idle"))
+    made = case(law, law({"strong": 1.6}) + np.random.default_rng(2).normal(size=400), candidates)
+    problem = problem_of(made, candidates, CRITERIA[0])
+    (none,) = problem.continued(problem.fitted([()], {}))
+    gains = []
+    for fit in (none, problem.with_sensitivities(none)):
+        about = problem.linear_about(fit, candidates)
+        gains.append(about.log_evidence(candidates[:1]) - about.log_evidence(()))
+    assert gains[0] < 0
+    assert gains[1] > 10
+    scored = ForwardSelection().search(problem)
+    assert names(scored) == {"strong"}
+    assert scored[0].fit is not None
+    assert scored[0].fit.p_value > 0.05
+
+
 def test_a_name_is_held_against_the_best_set_without_it() -> None:
     # The true effect bends upwards: its slope at 0 promises 14 nats less than an imitation by another effect.
     times = np.linspace(0.0, 1.0, 400)

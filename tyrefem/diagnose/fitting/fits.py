@@ -178,6 +178,21 @@ def continued(
     return _fitted([(residuals, fit.state.continued()) for fit in fits], predictions, tick)
 
 
+def with_sensitivities(
+    residuals: Residuals, predictions: Predictions, fit: FittedSet, unknowns: Sequence[Unknown], tick: Tick = None
+) -> FittedSet:
+    """The fit with sensitivities to unknowns of other effects at its point, for sets that are estimated from it.
+
+    Far from x = 0 those taken there are wrong: base numbers that imitate a worn tread leave nothing for it to explain.
+    """
+    numbers = residuals.fitted
+    point = fit.members, tuple(unknowns), fit.state.current_values
+    (answers,) = predictions.jacobians([point], numbers, tick)
+    columns = residuals.joined([residuals.runs[i].whitened(J) for i, J in zip(numbers, answers, strict=True)])
+    known = {each: column for each, column in zip(unknowns, columns.T, strict=True) if np.isfinite(column).all()}
+    return replace(fit, state=replace(fit.state, further={**fit.state.further, **known}))
+
+
 def fitted_beside(
     predictions: Predictions,
     fits: Sequence[tuple[FittedSet, Residuals]],
@@ -294,7 +309,7 @@ def predictive(r: Array, covariance: Array) -> tuple[float, float]:
 
 
 def linear_about(residuals: Residuals, fit: FittedSet, unknowns: Sequence[Unknown]) -> LinearModel:
-    """The linear model about a fit; the columns of further unknowns are those at x = 0, of `twins` those of the fit.
+    """The linear model about a fit; the columns of further unknowns are those of the fit if it has them, else at x = 0.
 
     A shared error of the residuals that the fit was made without is whitened, in place of that of the fit; the offset
     of the residuals is subtracted if the fit has neither.
@@ -312,6 +327,9 @@ def linear_about(residuals: Residuals, fit: FittedSet, unknowns: Sequence[Unknow
                     [residuals.runs[i].whitened(residuals.offset[i]) for i in residuals.fitted]
                 )
             jacobian, data = shared.whitened(jacobian), shared.whitened(data)
+    if shared is fit.shared_error:
+        for new, unknown in enumerate(unknowns):
+            further[:, new] = fit.state.further.get(unknown, further[:, new])
     for new, known in twins(unknowns, fit.unknowns).items():
         further[:, new] = jacobian[:, known]
     return LinearModel(

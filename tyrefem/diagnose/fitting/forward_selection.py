@@ -21,10 +21,12 @@ from tyrefem.inputs.study import StudyData
 class ForwardSelection:
     """Sets grow by one effect at a time from sets that explain the data.
 
-    1. The empty set is fitted. If it nearly explains the data, the linear model about this fit ranks all effects and
-       pairs. Unless noise explains what it leaves, the linear model about x = 0 ranks them too, and the best effects
-       are fitted with the full model from there: base numbers that imitate an effect may hide it.
+    1. The empty set is fitted. If it nearly explains the data, sensitivities to all effects are taken at its fit, and
+       the linear model about it ranks all effects and pairs: those at x = 0 do not show an effect that base numbers
+       imitate. Else, or if noise does not explain what the search leaves, the linear model about x = 0 ranks them too,
+       and the best effects are fitted from there.
     2. From every good fit, the linear model about it ranks the sets with one more effect. The best sets are fitted.
+       Where noise does not explain what the best fit leaves, its sensitivities are taken at its fit, too.
     3. At the end every subset of the best set is fitted (backward check), and the best set without an effect that
        would be named.
 
@@ -48,18 +50,13 @@ class ForwardSelection:
         none = progress.fits[()]
         if none.close:
             progress.extend_none()
-        if not none.close or none.p_value < settings.usual_p:
+        else:
             progress.fit([*singles[: settings.singles], *ahead], {})
-        batches = 0
-        outside = problem.outside(progress.fits[()]) if problem.outside else -np.inf
-        while len(progress.fits) < settings.most_sets:
-            if batches >= settings.largest and outside > progress.top + settings.outside_lead:
-                break
-            batches += 1
-            sets = progress.promising()[: settings.batch] or progress.missing_parts()
-            if not sets:
-                break
-            progress.fit(sets)
+        outside = problem.outside(none) if problem.outside else -np.inf
+        progress.grow(outside)
+        if none.close and progress.missing:
+            progress.fit_again([*singles[: settings.singles], *ahead])
+            progress.grow(outside)
         for _ in range(settings.name_rounds):
             starts = rivals_of_names(progress.scored(), settings)
             if not starts:
@@ -83,6 +80,8 @@ class _Progress:
         self.fits: dict[Members, FittedSet] = {}
         #: Set -> number of times that its fit was continued.
         self._continuations: Counter[Members] = Counter()
+        #: Sets with sensitivities to all effects at their fits.
+        self._renewed: set[Members] = set()
         linear = problem.linear
         #: Set -> (estimated score, whether the estimate is from the fit of a subset).
         self._estimate: dict[Members, tuple[float, bool]] = {
@@ -102,12 +101,26 @@ class _Progress:
         return sorted(sets, key=lambda members: -self._estimate[members][0])
 
     def fit(self, sets: Iterable[Members], starts: Mapping[Members, FittedSet] | None = None) -> None:
-        """Fit sets, continue the leading fits, and estimate the sets that add one effect to a good fit.
+        """Fit sets without a fit, continue the leading fits, and estimate the sets that add one effect to a good fit.
 
         ``starts``: of the fits, others begin at x = 0; None: fits of their best parts near the data.
         """
         wanted = [members for members in dict.fromkeys(sets) if members not in self.fits]
         self._take(self.problem.fitted(wanted, self._starts(wanted) if starts is None else starts))
+        self._judge(wanted)
+
+    def fit_again(self, sets: Sequence[Members]) -> None:
+        """Fit sets from x = 0, whose fits may have begun at distorted base numbers; the better fit of each stays."""
+        known = {members: self.score(members) for members in sets if members in self.fits}
+        fits = self.problem.fitted(list(dict.fromkeys(sets)), {})
+        better = [
+            fit for fit in fits if self.problem.score(fit) > known.get(self.problem.ordered(fit.members), -np.inf)
+        ]
+        self._take(better)
+        self._judge([self.problem.ordered(fit.members) for fit in better])
+
+    def _judge(self, wanted: Sequence[Members]) -> None:
+        """Continue the leading fits, and estimate the sets that add to new good fits."""
         # A continued fit gives better estimates of the sets that add to it.
         for members in dict.fromkeys((*wanted, *self._continue_leading())):
             good = self.score(members) > self.top - self.settings.far_score
@@ -151,11 +164,41 @@ class _Progress:
     def extend_none(self) -> None:
         """Estimate all single effects and pairs in the linear model about the fit of no effect."""
         problem = self.problem
+        self._renewed.add(())
+        self.fits[()] = problem.with_sensitivities(self.fits[()])
         about = problem.linear_about(self.fits[()], problem.candidates)
         of_none = problem.linear_score(about, ())
         for score, members in screened(problem, about):
             if members:
                 self._estimate[problem.ordered(members)] = (self.score(()) + score - of_none, True)
+
+    def grow(self, outside: float) -> None:
+        """Fit the most promising sets, batch by batch. ``outside``: score of a cause outside the catalogue."""
+        settings, batches = self.settings, 0
+        while len(self.fits) < settings.most_sets:
+            if batches >= settings.largest and outside > self.top + settings.outside_lead:
+                break
+            batches += 1
+            self._renew_best()
+            sets = self.promising()[: settings.batch] or self.missing_parts()
+            if not sets:
+                break
+            self.fit(sets)
+
+    @property
+    def missing(self) -> bool:
+        """Whether noise does not explain what the best fit leaves."""
+        return self.fits[max(self.fits, key=self.score)].p_value < self.settings.usual_p
+
+    def _renew_best(self) -> None:
+        """Estimate the sets that add to the best fit anew, with sensitivities at its point, if something is missing."""
+        best = max(self.fits, key=self.score)
+        fit = self.fits[best]
+        if not (fit.close and self.missing) or len(best) >= self.settings.largest or best in self._renewed:
+            return
+        self._renewed.add(best)
+        self.fits[best] = self.problem.with_sensitivities(fit)
+        self._extend(best)
 
     def _extend(self, members: Members) -> None:
         """Estimate every set with one more effect in the linear model about the fit."""

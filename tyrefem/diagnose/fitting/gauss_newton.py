@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -36,6 +36,7 @@ class FitState(Brief):
     done : the fit has ended. converged : further steps would not reduce the misfit noticeably.
     continuation : the state continues a first fit. jacobian_outdated : J was not taken at x.
     needs_tangents : J is needed at x. simulated : x was simulated.
+    further : unknowns of other effects -> (n,) whitened -dr/dx, where they were taken at a point of this fit.
     expected, next_jacobian : (n,) residuals at the next point and the linear model there, where they are known better
         than by J; None: by J.
     """
@@ -60,6 +61,7 @@ class FitState(Brief):
     jacobian_outdated: bool = False
     needs_tangents: bool = False
     simulated: bool = True
+    further: Mapping[Unknown, Array] = field(default_factory=dict)
     expected: Array | None = None
     next_jacobian: Array | None = None
 
@@ -248,6 +250,7 @@ class FitState(Brief):
             limit=self.steps + self.settings.beside_steps,
             radius=self.settings.trust,
             simulated=True,
+            further={},
         )
         return further.proposed()
 
@@ -265,6 +268,18 @@ class FitState(Brief):
             J=self.J[:, kept],
             simulated=False,
         )
+
+    def taken(self, linear: LinearModel, unknowns: Sequence[Unknown]) -> Array:
+        """(n, k) whitened -dr/dx over unknowns of other effects: at this fit if they are known there, else at x = 0.
+
+        ``linear``: the linear model about x = 0. `twins` have the sensitivities of their numbers in this fit.
+        """
+        columns = linear.jacobian[:, linear.design.columns(unknowns)]
+        for number, unknown in enumerate(unknowns):
+            columns[:, number] = self.further.get(unknown, columns[:, number])
+        for number, place in twins(unknowns, self.unknowns).items():
+            columns[:, number] = self.J[:, place]
+        return columns
 
     def with_jacobian(self, J: Array) -> FitState:
         """The state after the tangents at x; ``J``: whitened (n, k)."""
@@ -291,7 +306,11 @@ def initial_state(
     amplitudes = tuple(unknown for member in new for unknown in member.amplitudes)
     present = [unknown for member in new for unknown in member.presence]
     shapes = tuple(unknown for member in new for unknown in member.shapes)
-    columns = linear.jacobian[:, design.columns(amplitudes)]
+    further = {} if part is None else part.further
+    columns, at_once = (
+        linear.jacobian[:, design.columns(each)] if part is None else part.taken(linear, each)
+        for each in (amplitudes, present)
+    )
     if part is None:
         unknowns = (*design.unknowns[: design.nuisance], *amplitudes)
         x, r = np.zeros(len(unknowns)), linear.data
@@ -299,14 +318,12 @@ def initial_state(
     else:
         unknowns = (*part.unknowns, *amplitudes)
         x, r = np.concatenate([part.x, np.zeros(len(amplitudes))]), part.r
-        for number, place in twins(amplitudes, part.unknowns).items():
-            columns[:, number] = part.J[:, place]
         J, computed, shapes = np.hstack([part.J, columns]), part.computed, (*part.shapes, *shapes)
-    r = r - linear.jacobian[:, design.columns(present)].sum(axis=1)
+    r = r - at_once.sum(axis=1)
     empty = Posterior(x, np.zeros((len(x), len(x))), 0.0, np.zeros(len(x), dtype=bool), np.zeros(len(x)))
     # An effect without amplitude changes all sensitivities, so its start is simulated and tangents are taken first.
     state = FitState(
         members, unknowns, shapes, settings, x, r, J, dict(computed), x, empty, settings.trust, settings.first_steps,
-        simulated=not present,
+        simulated=not present, further=further,
     )  # fmt: skip
     return state.proposed() if state.simulated else replace(state, posterior=state.fitted())

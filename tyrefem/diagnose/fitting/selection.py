@@ -13,7 +13,7 @@ import numpy as np
 from tyrefem.brief import Brief
 from tyrefem.diagnose.data.residuals import Residuals
 from tyrefem.diagnose.fitting.criterion import Criterion
-from tyrefem.diagnose.fitting.fits import FittedSet, continued, first_fits, linear_about
+from tyrefem.diagnose.fitting.fits import FittedSet, continued, first_fits, linear_about, with_sensitivities
 from tyrefem.diagnose.forward.multifidelity import Predictions
 from tyrefem.diagnose.inference.linear_model import LinearModel
 from tyrefem.diagnose.settings import DiagnosisSettings
@@ -120,8 +120,14 @@ class SelectionProblem(Brief):
         """Fits continued to convergence."""
         return continued(self.residuals, self.predictions, fits, self._count)
 
+    def with_sensitivities(self, fit: FittedSet) -> FittedSet:
+        """The fit with sensitivities to all other effects at its point."""
+        others = [each for each in self.candidates if each not in fit.members]
+        unknowns = [unknown for each in others for unknown in (*each.amplitudes, *each.presence)]
+        return with_sensitivities(self.residuals, self.predictions, fit, unknowns, self._count)
+
     def linear_about(self, fit: FittedSet, candidates: Sequence[Candidate]) -> LinearModel:
-        """The linear model about a fit; the columns of further effects are those at x = 0."""
+        """The linear model about a fit; further effects have the columns at x = 0 unless the fit has its own."""
         unknowns = [unknown for each in candidates for unknown in (*each.amplitudes, *each.presence)]
         return linear_about(self.residuals, fit, unknowns)
 

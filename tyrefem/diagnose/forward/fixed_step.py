@@ -137,13 +137,43 @@ class FixedStepRun:
 
         ``shifts`` (n_shifts, n_sensors, 2) m: along the meridian and in depth, from the sensors' places.
         """
+        temperatures = self._computed(self._moved(shifts).reshape(-1, 2)).reshape(len(self.grid), *shifts.shape[:2])
+        return recorded(self.study, self.grid, temperatures.swapaxes(1, 2))
+
+    def at_displaced(self, shift: Array) -> dict[str, Array]:
+        """Sensor -> (3, n_grid): change of the reading if all sensors move, K; its slopes over both directions, K/m.
+
+        ``shift`` (n_sensors, 2) m: as in `displaced`. Where the wall ends a slope is that towards the inside.
+        """
+        steps = self._steps_inside(shift)
+        shifts = np.array([np.zeros_like(shift), shift, shift, shift])
+        shifts[2, :, 0] += steps[:, 0]
+        shifts[3, :, 1] += steps[:, 1]
+        changes, of_sensor = {}, dict(zip(self.study.stated_places, steps, strict=True))
+        for name, readings in self.displaced(shifts).items():
+            here, there, along, deeper = readings.T
+            by, into = of_sensor[name]
+            changes[name] = np.array([there - here, (along - there) / by, (deeper - there) / into])
+        return changes
+
+    def _steps_inside(self, shift: Array) -> Array:
+        """(n_sensors, 2) m: signed steps of difference quotients about moved sensors, away from the end of the wall."""
+        steps, here = np.full(shift.shape, QUOTIENT), self._moved(shift)
+        for direction in (0, 1):
+            ahead = shift.copy()
+            ahead[:, direction] += QUOTIENT
+            distance = np.linalg.norm(self._moved(ahead) - here, axis=-1)
+            steps[distance < QUOTIENT / 2, direction] = -QUOTIENT
+        return steps
+
+    def _moved(self, shifts: Array) -> Array:
+        """(..., n_sensors, 2) m: (r, z) of the sensors, moved by ``shifts`` (..., n_sensors, 2) m and kept inside."""
         section = self.tyre.study.section
         s, depth = section.locate(np.array(list(self.study.stated_places.values())).reshape(-1, 2))
         known = np.array(list(displacements(self.study).values())).reshape(-1, 2)
         along, deeper = np.moveaxis(known + shifts, -1, 0)
-        points = inside_mesh(section, self.tyre.mesh.size, (s + along).ravel(), (depth + deeper).ravel())
-        temperatures = self._computed(points).reshape(len(self.grid), *shifts.shape[:2])
-        return recorded(self.study, self.grid, temperatures.swapaxes(1, 2))
+        places = inside_mesh(section, self.tyre.mesh.size, (s + along).ravel(), (depth + deeper).ravel())
+        return places.reshape(shifts.shape)
 
 
 def sensor_points(study: StudyData, tyre: RollingTyre) -> Array:
@@ -283,10 +313,8 @@ class ReadingSensitivities:
     @cached_property
     def _over_places(self) -> dict[str, Array]:
         """Sensor -> (n_grid, 2) d(reading)/d(place) along the meridian and in depth, K/m."""
-        base = self.base
-        shifts = np.zeros((3, len(base.study.stated_places), 2))
-        shifts[1, :, 0] = shifts[2, :, 1] = QUOTIENT
-        return {name: (each[:, 1:] - each[:, :1]) / QUOTIENT for name, each in base.displaced(shifts).items()}
+        still = np.zeros((len(self.base.study.stated_places), 2))
+        return {name: each[1:].T for name, each in self.base.at_displaced(still).items()}
 
     def _from_tangents(self, tangents: Tangents, sensors: Sequence[str]) -> dict[str, Array]:
         base, gas, slopes = self.base, list(self.base.tyre.problem.reservoirs), {}

@@ -280,24 +280,24 @@ class ForwardModel(Brief):
             return np.full(self.drives[number].size, np.nan)
         return self.blocks(number, simulated.grid, simulated.readings)
 
-    def displaced(self, number: int, values: Values, shifts: Array) -> Array:
-        """(n_shifts, n_blocks) K: change of the block means if sensors are moved at the temperatures of a simulation.
+    def displaced(self, number: int, values: Values, shift: Array) -> Array:
+        """(3, n_blocks): change of the block means if sensors move at the temperatures of a simulation, K; slopes, K/m.
 
-        ``shifts`` (n_shifts, n_sensors, 2) m: along the meridian and in depth; sensors as in the study. NaN for an
-        impossible tyre.
+        Rows 1 and 2: slopes at the new places along the meridian and in depth. ``shift`` (n_sensors, 2) m: along the
+        meridian and in depth; sensors as in the study. NaN for an impossible tyre.
         """
         try:
             here = self._simulated(number, values)
         except InputError:
-            return np.full((len(shifts), self.drives[number].size), np.nan)
-        readings = here.displaced(np.concatenate([np.zeros((1, *shifts.shape[1:])), shifts]))
+            return np.full((3, self.drives[number].size), np.nan)
+        changes = here.at_displaced(shift)
         parts = [
-            each.sampled(here.grid, change - change[:, :1])
-            if (change := readings.get(each.sensor)) is not None
-            else np.zeros((len(each.starts), len(shifts) + 1))
+            each.sampled(here.grid, change.T)
+            if (change := changes.get(each.sensor)) is not None
+            else np.zeros((len(each.starts), 3))
             for each in self.drives[number].sensors
         ]
-        return np.concatenate(parts).T[1:]
+        return np.concatenate(parts).T
 
     def _simulated(self, number: int, values: Values) -> FixedStepRun:
         """Fixed-step simulation on the mesh and with the operators of `base`; the latest ones are kept."""
