@@ -112,6 +112,11 @@ def _row(layout: FittedLayout, number: int) -> dict[str, Any]:
     return row
 
 
+def fitted_tag(study: StudyData, seed: int) -> str:
+    """Begin of the names of the files of fitted cases; they depend on the study, the seed and the version."""
+    return tag_for(["fitted", jsonable(dict(study.data)), seed, tyrefem.__version__])
+
+
 def fitted_cases(
     study: StudyData,
     known: Sensitivities,
@@ -125,7 +130,7 @@ def fitted_cases(
 
     Cases in the folder with the same study, seed and version are not run again; case n depends on the seed and n only.
     """
-    tag = tag_for(["fitted", jsonable(dict(study.data)), seed, tyrefem.__version__])
+    tag = fitted_tag(study, seed)
     rows = kept_cases(folder, tag)
     left = [number for number in range(count) if number not in rows]
     check_effort(ForwardModel(study, known.drives, settings=SETTINGS), f"{len(left)} cases", len(left) * CASE, workers)
