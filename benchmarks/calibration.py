@@ -23,7 +23,6 @@ from tyrefem.diagnose.layout.isolability import planned_sensitivities
 from tyrefem.output import atomic_path
 from tyrefem.reports.calibration import save
 
-
 #: Sets with a smaller probability are not recorded; they follow the others.
 LEAST = 1e-9
 
