@@ -117,7 +117,7 @@ def test_a_misfit_that_noise_seldom_makes_is_believed_with_tangents_at_its_own_p
     left = odd * np.where(np.arange(10) % 2, 1.0, -1.0)
     tangents = []
     for doubtful_p in (0.0, DEFAULT.doubtful_p):
-        made = made_of(saturating(at(0.2, 3.0)) + left, DiagnosisSettings(doubtful_p=doubtful_p))
+        made = made_of(saturating(at(0.2, 3.0)) + left, DiagnosisSettings(doubtful_p=doubtful_p, near_tangents=0.0))
         fit = fitted(made)
         assert fit.converged
         assert fit.misfit == pytest.approx(least(made), abs=1.0)

@@ -52,7 +52,7 @@ def leading(scored: list[ScoredSet]) -> list[FittedSet]:
 
 
 def test_leading_fits_have_sensitivities_of_their_points() -> None:
-    made, problem = problem_of(DiagnosisSettings(largest=1))
+    made, problem = problem_of(DiagnosisSettings(largest=1, near_tangents=0.0))
     before = ForwardSelection().search(problem)
     after = problem.settled(before)
     assert len(leading(before)) >= 3
@@ -68,6 +68,20 @@ def test_leading_fits_have_sensitivities_of_their_points() -> None:
     count = len(made.formula.questions)
     assert problem.settled(after) == after
     assert len(made.formula.questions) == count
+
+
+def test_tangents_near_a_point_are_as_good_as_those_at_it() -> None:
+    results = []
+    for near in (0.0, DEFAULT.near_tangents):
+        made, problem = problem_of(DiagnosisSettings(largest=1, near_tangents=near))
+        scored = problem.settled(ForwardSelection().search(problem))
+        results.append((scored, len(made.formula.points("jacobian"))))
+    (exact, many), (near_enough, fewer) = results
+    assert fewer < many
+    scores = {entry.members: entry.score for entry in exact if entry.fit in leading(exact)}
+    found = {entry.members: entry.score for entry in near_enough}
+    assert max(abs(found[members] - score) for members, score in scores.items()) < 0.2
+    assert all(fit.settled for fit in leading(near_enough))
 
 
 def test_a_fit_that_has_not_converged_is_not_named() -> None:

@@ -82,6 +82,8 @@ class DiagnosisSettings:
     close_prediction: float = 1.0
     #: Above this error new tangents are taken.
     poor_prediction: float = 6.0
+    #: Tangents count as taken at a point if no unknown has moved further since, prior sd.
+    near_tangents: float = 0.4
     #: A fit has converged when the linear model predicts a smaller reduction of the misfit than this.
     least_reduction: float = 0.5
     #: If noise gives the misfit with a smaller probability than this, new tangents confirm that the fit has converged.

@@ -85,7 +85,7 @@ class FittedSet(Brief):
     @property
     def settled(self) -> bool:
         """Whether the fit has finished with sensitivities taken at its point, on which its evidence rests."""
-        return self.finished and not self.state.jacobian_outdated
+        return self.finished and not self.state.lacks_tangents
 
     @property
     def worth_settling(self) -> bool:
@@ -236,9 +236,7 @@ def _fitted(pairs: Sequence[tuple[Residuals, FitState]], predictions: Prediction
         for place, answers in zip(points, predictions.predict(questions, numbers, tick), strict=True):
             current[place] = _advanced(residuals[place], current[place], answers)
         tangents = [place for place in active if current[place].needs_tangents and not current[place].done]
-        places = [
-            (current[place].members, current[place].unknowns, current[place].current_values) for place in tangents
-        ]
+        places = [(current[place].members, current[place].wanted_tangents, current[place].current_values) for place in tangents]
         for place, answers in zip(tangents, predictions.jacobians(places, numbers, tick), strict=True):
             runs = residuals[place].runs
             whitened = [runs[i].whitened(J) for i, J in zip(numbers, answers, strict=True)]

@@ -34,7 +34,9 @@ class FitState(Brief):
     computed : number of the run -> block means at x. next_point : (k,). posterior : of the linear model about x.
     radius : of the trust region, prior sd. limit : most steps. steps : steps made. tangents : Jacobians still allowed.
     done : the fit has ended. converged : further steps would not reduce the misfit noticeably.
-    continuation : the state continues a first fit. jacobian_outdated : J was not taken at x.
+    continuation : the state continues a first fit. jacobian_outdated : J was not taken near x.
+    tangents_at : (k,) x where the sensitivities of J were taken; None: unknown.
+    pending : unknowns whose sensitivities in J were taken elsewhere, at x = 0.
     needs_tangents : J is needed at x. simulated : x was simulated.
     further : unknowns of other effects -> (n,) whitened -dr/dx, where they were taken at a point of this fit.
     expected, next_jacobian : (n,) residuals at the next point and the linear model there, where they are known better
@@ -61,6 +63,8 @@ class FitState(Brief):
     jacobian_outdated: bool = False
     needs_tangents: bool = False
     simulated: bool = True
+    tangents_at: Array | None = None
+    pending: tuple[Unknown, ...] = ()
     further: Mapping[Unknown, Array] = field(default_factory=dict)
     expected: Array | None = None
     next_jacobian: Array | None = None
@@ -145,6 +149,23 @@ class FitState(Brief):
         return replace(self, steps=self.steps + 1, radius=self.settings.trust_shorter * self._reach).proposed()
 
     @property
+    def _near_tangents(self) -> bool:
+        """Whether J was taken so near that new tangents would change the ln evidence by less than 0.4."""
+        if self.tangents_at is None:
+            return False
+        return bool(np.abs((self.x - self.tangents_at) / self.prior[0]).max(initial=0.0) <= self.settings.near_tangents)
+
+    @property
+    def lacks_tangents(self) -> bool:
+        """Whether some sensitivities in J were not taken near x."""
+        return self.jacobian_outdated or bool(self.pending)
+
+    @property
+    def wanted_tangents(self) -> tuple[Unknown, ...]:
+        """The unknowns whose tangents are needed at x."""
+        return self.unknowns if self.jacobian_outdated or not self.pending else self.pending
+
+    @property
     def _limited(self) -> bool:
         """Whether the trust region ends the step to the next point."""
         return bool((np.abs(self.next_point - self.x) / self.prior[0] > 0.99 * self.radius).any())
@@ -172,13 +193,12 @@ class FitState(Brief):
         )
         if reduction < 0 and self.simulated:
             state = replace(state, radius=settings.trust_shorter * reach)
-            return state._with_tangents() if state.jacobian_outdated and state._may_take_tangents else state.proposed()
+            return state._with_tangents() if state.lacks_tangents and state._may_take_tangents else state.proposed()
         limited = self._limited
         radius = self.radius * settings.trust_wider if limited and reduction > predicted_reduction / 2 else self.radius
         J = (self.J if self.next_jacobian is None else self.next_jacobian) + change
-        state = replace(
-            state, x=self.next_point, r=r, J=J, computed=dict(computed), jacobian_outdated=True, radius=radius
-        )
+        state = replace(state, x=self.next_point, r=r, J=J, computed=dict(computed), radius=radius)
+        state = replace(state, jacobian_outdated=self.jacobian_outdated or not state._near_tangents)
         if not self.simulated:
             return state._requesting_tangents(())
         return state._judged(prediction_error, reduction, limited=limited)
@@ -200,7 +220,7 @@ class FitState(Brief):
 
     def _confirmed(self) -> FitState:
         """The state; with new tangents in place of an end that J may wrongly predict after many secant corrections."""
-        ended = self.converged and self.continuation and self.jacobian_outdated
+        ended = self.converged and self.continuation and self.lacks_tangents
         if ended and self._may_take_tangents and self._misfit_is_improbable:
             return replace(self, done=False, converged=False)._with_tangents()
         return self
@@ -210,12 +230,15 @@ class FitState(Brief):
 
     def _requesting_tangents(self, shapes: Sequence[Unknown]) -> FitState:
         """The state that needs tangents at x; the shape parameters join the fit because the amplitudes are known."""
+        # Where only some sensitivities were taken elsewhere, the others stay.
+        partly = bool(self.pending) and not self.jacobian_outdated and self.simulated and not shapes
         return replace(
             self,
             unknowns=(*self.unknowns, *shapes),
             x=np.concatenate([self.x, np.zeros(len(shapes))]),
             shapes=tuple(unknown for unknown in self.shapes if unknown not in shapes),
             jacobian_outdated=False,
+            pending=self.pending if partly else (),
             needs_tangents=True,
         )
 
@@ -230,7 +253,11 @@ class FitState(Brief):
             limit=self.steps + settings.more_steps,
             radius=max(self.radius, 1.0),
         )
-        return further._requesting_tangents(further.shapes) if self.simulated else replace(further, next_point=self.x)
+        if not self.simulated:
+            return replace(further, next_point=self.x)
+        if self.lacks_tangents or self.shapes or self.tangents_at is None:
+            return further._requesting_tangents(further.shapes)
+        return further.proposed()
 
     def beside(self, unknowns: Sequence[Unknown], r: Array, J: Array) -> FitState:
         """The state at the same point with further unknowns at 0, beside another covariance of the readings.
@@ -250,6 +277,8 @@ class FitState(Brief):
             limit=self.steps + self.settings.beside_steps,
             radius=self.settings.trust,
             simulated=True,
+            tangents_at=None,
+            pending=(),
             further={},
         )
         return further.proposed()
@@ -266,6 +295,8 @@ class FitState(Brief):
             x=self.x[kept],
             r=self.r + self.J[:, ~kept] @ self.x[~kept],
             J=self.J[:, kept],
+            tangents_at=None,
+            pending=(),
             simulated=False,
         )
 
@@ -282,8 +313,12 @@ class FitState(Brief):
         return columns
 
     def with_jacobian(self, J: Array) -> FitState:
-        """The state after the tangents at x; ``J``: whitened (n, k)."""
-        return replace(self, J=J, needs_tangents=False).proposed()
+        """The state after the tangents at x; ``J``: whitened (n, number of `wanted_tangents` unknowns)."""
+        if self.wanted_tangents != self.unknowns:
+            whole = self.J.copy()
+            whole[:, [self.unknowns.index(unknown) for unknown in self.wanted_tangents]] = J
+            return replace(self, J=whole, pending=(), needs_tangents=False).proposed()
+        return replace(self, J=J, tangents_at=self.x, pending=(), needs_tangents=False).proposed()
 
 
 def initial_state(
@@ -311,19 +346,25 @@ def initial_state(
         linear.jacobian[:, design.columns(each)] if part is None else part.taken(linear, each)
         for each in (amplitudes, present)
     )
+    tangents_at: Array | None = None
+    pending: tuple[Unknown, ...] = ()
     if part is None:
         unknowns = (*design.unknowns[: design.nuisance], *amplitudes)
         x, r = np.zeros(len(unknowns)), linear.data
-        J = np.hstack([linear.jacobian[:, : design.nuisance], columns])
+        J, tangents_at = np.hstack([linear.jacobian[:, : design.nuisance], columns]), x
     else:
         unknowns = (*part.unknowns, *amplitudes)
         x, r = np.concatenate([part.x, np.zeros(len(amplitudes))]), part.r
         J, computed, shapes = np.hstack([part.J, columns]), part.computed, (*part.shapes, *shapes)
+        if part.tangents_at is not None and not part.jacobian_outdated:
+            tangents_at = np.concatenate([part.tangents_at, np.zeros(len(amplitudes))])
+        known = {*part.further, *(amplitudes[number] for number in twins(amplitudes, part.unknowns))}
+        pending = (*part.pending, *(unknown for unknown in amplitudes if unknown not in known))
     r = r - at_once.sum(axis=1)
     empty = Posterior(x, np.zeros((len(x), len(x))), 0.0, np.zeros(len(x), dtype=bool), np.zeros(len(x)))
     # An effect without amplitude changes all sensitivities, so its start is simulated and tangents are taken first.
     state = FitState(
         members, unknowns, shapes, settings, x, r, J, dict(computed), x, empty, settings.trust, settings.first_steps,
-        simulated=not present, further=further,
+        simulated=not present, tangents_at=None if present else tangents_at, pending=pending, further=further,
     )  # fmt: skip
     return state.proposed() if state.simulated else replace(state, posterior=state.fitted())
