@@ -236,7 +236,8 @@ def _fitted(pairs: Sequence[tuple[Residuals, FitState]], predictions: Prediction
         for place, answers in zip(points, predictions.predict(questions, numbers, tick), strict=True):
             current[place] = _advanced(residuals[place], current[place], answers)
         tangents = [place for place in active if current[place].needs_tangents and not current[place].done]
-        places = [(current[place].members, current[place].wanted_tangents, current[place].current_values) for place in tangents]
+        wanted = (current[place] for place in tangents)
+        places = [(state.members, state.wanted_tangents, state.current_values) for state in wanted]
         for place, answers in zip(tangents, predictions.jacobians(places, numbers, tick), strict=True):
             runs = residuals[place].runs
             whitened = [runs[i].whitened(J) for i, J in zip(numbers, answers, strict=True)]
