@@ -78,7 +78,7 @@ class SizedMeridian:
     def _crown(self) -> tuple[Array, Array, Array, Array]:
         """s, r, z, phi up to where the membrane begins."""
         if self.belted is not None:
-            return self.belted.run()
+            return self.belted.line
         theta = np.linspace(0.0, self.join, 60) if self.join > 0 else np.zeros(1)
         r = self.crown - self.crown_radius * (1 - np.cos(theta))
         return self.crown_radius * theta, r, self.crown_radius * np.sin(theta), np.pi / 2 - theta
@@ -196,7 +196,7 @@ def belted_meridian(
     def line(x: Array) -> SizedMeridian:
         widest, share, leaves = (float(value) for value in x)
         belted = BeltedCrown(crown, widest, edge, share, power)
-        _, r, _, phi = belted.run()
+        _, r, _, phi = belted.line
         membrane = Membrane(widest, float((r[-1] ** 2 - widest**2) / np.sin(phi[-1])))
         join = float(np.pi / 2 - phi[-1])
         return SizedMeridian(membrane, crown, belted.radius, join, leaves, rim, offset, bend, belted)
