@@ -71,7 +71,8 @@ class Membrane:
         return np.asarray(self.tension(r) * (self.curvature(r) + cotangent2 * self.sine(r) / r) - 1)
 
     def radius(self, phi: ArrayLike) -> Array:
-        """r where the angle is phi: radial plies in closed form, bias plies by Newton steps between bounds.
+        """r where the angle is phi: radial plies in closed form, bias plies by Newton steps between bounds; an angle
+        that no radius has gives the bound.
 
         sin phi rises up to the radius where 2 sin^2(alpha) = k^2 (r^2 - r_m^2).
         """
@@ -81,17 +82,19 @@ class Membrane:
             return np.asarray(r)
         low = np.full_like(r, 0.1 * self.widest)
         high = np.full_like(r, np.sqrt((2 / self.lift**2 + self.widest**2) / 3))
-        r = np.clip(r, low, high)
-        for _ in range(80):
-            error = self.sine(r) - sine
-            low, high = np.where(error < 0, r, low), np.where(error > 0, r, high)
-            with np.errstate(all="ignore"):
+        below, above = sine <= self.sine(low), sine >= self.sine(high)
+        r = np.where(below, low, np.where(above, high, np.clip(r, low, high)))
+        reached = below | above
+        with np.errstate(all="ignore"):
+            for _ in range(80):
+                error = np.where(reached, 0.0, self.sine(r) - sine)
+                low, high = np.where(error < 0, r, low), np.where(error > 0, r, high)
                 newton = r - error / self.curvature(r)
-            inside = (newton > low) & (newton < high)
-            step = np.where(inside, newton, (low + high) / 2) - r
-            r = np.where(error == 0, r, r + step)
-            if np.abs(step[error != 0]).max(initial=0.0) < 1e-15:
-                break
+                inside = (newton >= low) & (newton <= high)
+                step = np.where(error == 0, 0.0, np.where(inside, newton, (low + high) / 2) - r)
+                r = r + step
+                if np.abs(step).max(initial=0.0) < 1e-15:
+                    break
         return np.asarray(r)
 
     def run(self, first: float, last: float, count: int) -> tuple[Array, Array, Array, Array]:
