@@ -12,7 +12,7 @@ from formula import STATED, Array, Case, case, effect, slopes
 from tyrefem.diagnose.fitting.criterion import LogEvidence
 from tyrefem.diagnose.fitting.exhaustive import Exhaustive
 from tyrefem.diagnose.fitting.fits import FittedSet
-from tyrefem.diagnose.fitting.forward_selection import ForwardSelection
+from tyrefem.diagnose.fitting.forward_selection import ForwardSelection, _Progress
 from tyrefem.diagnose.fitting.selection import ScoredSet, SelectionProblem
 from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
 from tyrefem.diagnose.unknowns.candidates import Members, SetPrior
@@ -53,7 +53,7 @@ def leading(scored: list[ScoredSet]) -> list[FittedSet]:
 
 def test_leading_fits_have_sensitivities_of_their_points() -> None:
     made, problem = problem_of(DiagnosisSettings(largest=1, near_tangents=0.0))
-    before = ForwardSelection().search(problem)
+    before = Exhaustive().search(problem)
     after = problem.settled(before)
     assert len(leading(before)) >= 3
     assert max(tangents_off(fit) for fit in leading(before)) > 0.02
@@ -148,3 +148,33 @@ def test_a_part_of_the_best_set_that_was_fitted_badly_is_fitted_from_it() -> Non
     count = len(made.formula.questions)
     assert problem.settled(mended) == mended
     assert len(made.formula.questions) == count
+
+
+def test_sets_that_add_to_a_fit_are_estimated_anew_where_it_rises() -> None:
+    candidates = (effect("strong"), effect("spare"), effect("weak"))
+    ripple = 1.5 * np.sin(15.0 * T)
+
+    def law(values: Mapping[str, float]) -> Array:
+        heat = 10.0 * values.get(STATED.key, 0.0) * np.sqrt(T)
+        strong = 60.0 * np.tanh(values.get("strong", 0.0) / 3.0) * T
+        return np.asarray(heat + strong + values.get("spare", 0.0) * T**4 + values.get("weak", 0.0) * ripple)
+
+    measured = law({"strong": 5.0, "weak": 0.8}) + np.random.default_rng(3).normal(size=N)
+    made = case(law, measured, candidates)
+    problem = SelectionProblem(made.residuals, made.predictions, candidates, SetPrior(candidates, 0.5), LogEvidence())
+    progress = _Progress(problem)
+    progress.fit([()])
+    alone, both, hidden = candidates[:1], candidates[:2], (candidates[0], candidates[2])
+    # The strong effect alone ended after its first step, with a spare one it did not: sets that add to it look bad.
+    hasty = replace(problem, residuals=replace(made.residuals, settings=DiagnosisSettings(first_steps=1)))
+    (stuck,) = hasty.fitted([alone], {})
+    stuck = replace(stuck, log_evidence=stuck.log_evidence - stuck.state.predicted_reduction / 2)
+    progress._take([stuck, *problem.continued(problem.fitted([both], {}))])
+    progress._extend(alone)
+    assert not progress.promising()
+    assert progress.settle()
+    assert progress.promising()[0] == problem.ordered(hidden)
+    progress.grow(-np.inf)
+    assert progress.scored()[0].members == problem.ordered(hidden)
+    # Nothing rises a second time.
+    assert not progress.settle()

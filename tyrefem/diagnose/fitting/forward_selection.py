@@ -27,8 +27,9 @@ class ForwardSelection:
        and the best effects are fitted from there.
     2. From every good fit, the linear model about it ranks the sets with one more effect. The best sets are fitted.
        Where noise does not explain what the best fit leaves, its sensitivities are taken at its fit, too.
-    3. At the end every subset of the best set is fitted (backward check), and the best set without an effect that
-       would be named.
+    3. At the end every subset of the best set is fitted (backward check). The leading fits are continued until they are
+       settled; where one rises, the sets with one more effect are estimated anew (2). The best set without an effect
+       that would be named is fitted, too.
 
     The search ends early if a cause outside the catalogue is far ahead.
 
@@ -56,6 +57,10 @@ class ForwardSelection:
         progress.grow(outside)
         if none.close and progress.missing:
             progress.fit_again([*singles[: settings.singles], *ahead])
+            progress.grow(outside)
+        for _ in range(settings.most_settlings):
+            if not progress.settle():
+                break
             progress.grow(outside)
         for _ in range(settings.name_rounds):
             starts = rivals_of_names(progress.scored(), settings)
@@ -184,6 +189,24 @@ class _Progress:
             if not sets:
                 break
             self.fit(sets)
+
+    def settle(self) -> bool:
+        """Continue the leading fits until they are settled, and estimate the sets that add to those that rose.
+
+        Returns whether any rose by more than ``near_score``: sets with one more effect were then estimated too low.
+        """
+        before = {members: self.score(members) for members in self.fits}
+        self._take([entry.fit for entry in self.problem.settled(self.scored()) if entry.fit is not None])
+        far = self.top - self.settings.far_score
+        rose = [
+            members
+            for members in self.fits
+            if self.score(members) > max(before.get(members, -np.inf) + self.settings.near_score, far)
+        ]
+        for members in rose:
+            if members and len(members) < self.settings.largest:
+                self._extend(members)
+        return bool(rose)
 
     @property
     def missing(self) -> bool:
