@@ -175,7 +175,12 @@ class _Progress:
         of_none = problem.linear_score(about, ())
         for score, members in screened(problem, about):
             if members:
-                self._estimate[problem.ordered(members)] = (self.score(()) + score - of_none, True)
+                self._judged(problem.ordered(members), self.score(()) + score - of_none)
+
+    def _judged(self, members: Members, value: float) -> None:
+        """An estimate of a set from the fit of a subset. With estimates from two subsets, the larger one counts."""
+        known, judged = self._estimate.get(members, (0.0, False))
+        self._estimate[members] = (max(value, known) if judged else value, True)
 
     def grow(self, outside: float) -> None:
         """Fit the most promising sets, batch by batch. ``outside``: score of a cause outside the catalogue."""
@@ -204,7 +209,9 @@ class _Progress:
             if self.score(members) > max(before.get(members, -np.inf) + self.settings.near_score, far)
         ]
         for members in rose:
-            if members and len(members) < self.settings.largest:
+            if not members and self.fits[()].close:
+                self.extend_none()
+            elif members and len(members) < self.settings.largest:
                 self._extend(members)
         return bool(rose)
 
@@ -232,10 +239,7 @@ class _Progress:
         for candidate in others:
             more = problem.ordered((*members, candidate))
             gain = criterion.of_linear(about, (candidate,)) - of_part + problem.prior(more) - problem.prior(members)
-            known, judged = self._estimate.get(more, (0.0, False))
-            value = self.score(members) + gain
-            # With estimates from two subsets, the larger one counts.
-            self._estimate[more] = (max(value, known) if judged else value, True)
+            self._judged(more, self.score(members) + gain)
 
     def promising(self) -> list[Members]:
         """Sets without a fit that may be the best set, best estimate first."""
