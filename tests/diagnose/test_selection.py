@@ -157,6 +157,23 @@ def test_sensitivities_at_the_fit_of_no_effect_show_what_those_at_x_0_do_not() -
     assert scored[0].fit.p_value > 0.05
 
 
+def test_an_effect_that_is_impossible_at_a_fit_keeps_its_sensitivities_at_x_0() -> None:
+    # As two channels that are swapped already, or a tread worn through.
+    def law(values: Mapping[str, float]) -> Array:
+        base, more = values.get(STATED.key, 0.0), values.get("impossible", 0.0)
+        return np.asarray(5.0 * base * T + values.get("possible", 0.0) * T**2 + (np.nan if base and more else more) * T)
+
+    candidates = (effect("possible"), effect("impossible"))
+    made = case(law, law({STATED.key: 1.0}) + np.random.default_rng(4).normal(size=N), candidates)
+    problem = problem_of(made, candidates, CRITERIA[0])
+    (none,) = problem.fitted([()], {})
+    fit = problem.with_sensitivities(none)
+    assert {unknown.key for unknown in fit.state.further} == {"possible"}
+    about = problem.linear_about(fit, candidates)
+    assert np.isfinite(about.jacobian).all()
+    assert np.isfinite(about.log_evidence(candidates))
+
+
 def test_a_name_is_held_against_the_best_set_without_it() -> None:
     # The true effect bends upwards: its slope at 0 promises 14 nats less than an imitation by another effect.
     times = np.linspace(0.0, 1.0, 400)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -188,8 +189,10 @@ def with_sensitivities(
     numbers = residuals.fitted
     point = fit.members, tuple(unknowns), fit.state.current_values
     (answers,) = predictions.jacobians([point], numbers, tick)
-    columns = residuals.joined([residuals.runs[i].whitened(J) for i, J in zip(numbers, answers, strict=True)])
-    known = {each: column for each, column in zip(unknowns, columns.T, strict=True) if np.isfinite(column).all()}
+    # Of an effect that is impossible at this point, columns are not finite: those at x = 0 stay.
+    taken = np.all([np.isfinite(J).all(axis=0) for J in answers], axis=0)
+    columns = residuals.joined([residuals.runs[i].whitened(J[:, taken]) for i, J in zip(numbers, answers, strict=True)])
+    known = dict(zip(itertools.compress(unknowns, taken), columns.T, strict=True))
     return replace(fit, state=replace(fit.state, further={**fit.state.further, **known}))
 
 
