@@ -25,6 +25,8 @@ from tyrefem.diagnose.unknowns.candidates import Candidate, Members, separate
 FAR = 60.0
 #: A fit with half waves beyond so many prior standard deviations asks for wider priors; fits that are continued there.
 STRAIN, RENEWED = 2.5, 2
+#: Rivals of the best set whose fits are continued to convergence.
+RIVALS = 2
 #: A strain law whose fits keep a misfit above this times the number of readings is not searched for further sets.
 NEAR = 10.0
 #: Beside a discrepancy of this size noise explains the misfit, so that no larger one is tried.
@@ -190,11 +192,27 @@ class RankedBeside(Brief):
         # A part that begins where the best fit ends needs no second start.
         to_end -= {self.problem.ordered(fit.members) for fit in ended}
         ended += [self.fits[members] for members in to_end if members in self.fits and not is_good(self.fits[members])]
+        if parts:
+            ended += [fit for fit in self._unfinished_rivals() if fit not in ended]
         if not ended:
             return False
         self._take(continued(self.residuals, self.problem.predictions, ended, self.problem._count))
         self._estimate()
         return True
+
+    def _unfinished_rivals(self) -> list[FittedSet]:
+        """The best sets that lack an effect of the best one and whose fits have not converged.
+
+        Noise may explain what such a fit leaves while its best point is far better: two swapped channels had ended 100
+        above the misfit of a displaced thermocouple that imitates them.
+        """
+        best, top = set(self.best.members), self.score(self.problem.ordered(self.best.members))
+        rivals = [
+            members
+            for members, fit in self.fits.items()
+            if members and not fit.converged and not best <= set(members) and self.score(members) > top - FAR
+        ]
+        return [self.fits[members] for members in sorted(rivals, key=self.score)[-RIVALS:]]
 
     def _hidden_rivals(self) -> list[FittedSet]:
         """Starts for sets near the best one whose own fits ended far from their best points.
