@@ -11,7 +11,7 @@ from formula import STATED, Array, case, effect
 
 from tyrefem.diagnose.beside.best_fit import not_asked_for
 from tyrefem.diagnose.beside.discrepancy import NONE, Discrepancy
-from tyrefem.diagnose.beside.ranked_beside import RankedBeside
+from tyrefem.diagnose.beside.ranked_beside import FAR, RankedBeside, is_good
 from tyrefem.diagnose.fitting.criterion import LogEvidence
 from tyrefem.diagnose.fitting.selection import SelectionProblem
 from tyrefem.diagnose.settings import DiagnosisSettings
@@ -56,6 +56,27 @@ def test_a_rival_that_ended_at_its_best_point_stays_as_it_is() -> None:
     fits = [problem.settled_fit(fit) for fit in problem.fitted([(), (STRONG,), (RIVAL,), (STRONG, SPARE)], {})]
     beside = RankedBeside(problem, Discrepancy(NONE, 0.0), fits={problem.ordered(fit.members): fit for fit in fits})
     assert beside._hidden_rivals() == []
+
+
+def test_a_rival_whose_misfit_noise_explains_is_fitted_to_its_end() -> None:
+    made = case(law, law({"strong": 5.0}) + np.random.default_rng(3).normal(size=N), CANDIDATES)
+    problem = SelectionProblem(made.residuals, made.predictions, CANDIDATES, SetPrior(CANDIDATES, 0.5), LogEvidence())
+    fits = [problem.settled_fit(fit) for fit in problem.fitted([(), (STRONG,), (RIVAL,)], {})]
+    good = {problem.ordered(fit.members): fit for fit in fits}
+    whole = good[STRONG,]
+    early = replace(
+        whole, log_evidence=whole.log_evidence - 20.0, state=replace(whole.state, converged=False, done=False)
+    )
+    beside = RankedBeside(problem, Discrepancy(NONE, 0.0), fits=good | {(STRONG,): early})
+    assert is_good(early)
+    assert beside.best.members == (RIVAL,)
+    assert beside._hidden_rivals() == []
+    assert beside._continue_ended()
+    assert beside.fits[STRONG,].log_evidence == pytest.approx(whole.log_evidence, abs=0.5)
+    # Converged, it is not fitted again; nor is a rival far behind.
+    assert beside._unfinished_rivals() == []
+    beside.fits[STRONG,] = replace(early, log_evidence=early.log_evidence - FAR)
+    assert beside._unfinished_rivals() == []
 
 
 @pytest.mark.parametrize(("spare", "idle"), [(0.0, (SPARE,)), (12.0, ())])
