@@ -25,8 +25,8 @@ from tyrefem.diagnose.unknowns.candidates import Candidate, Members, separate
 FAR = 60.0
 #: A fit with half waves beyond so many prior standard deviations asks for wider priors; fits that are continued there.
 STRAIN, RENEWED = 2.5, 2
-#: Rivals of the best set whose fits are continued to convergence.
-RIVALS = 2
+#: So many rivals of the best set have their fits continued to convergence.
+UNFINISHED = 2
 #: A strain law whose fits keep a misfit above this times the number of readings is not searched for further sets.
 NEAR = 10.0
 #: Beside a discrepancy of this size noise explains the misfit, so that no larger one is tried.
@@ -207,12 +207,12 @@ class RankedBeside(Brief):
         above the misfit of a displaced thermocouple that imitates them.
         """
         best, top = set(self.best.members), self.score(self.problem.ordered(self.best.members))
-        rivals = [
+        unfinished = [
             members
             for members, fit in self.fits.items()
             if members and not fit.converged and not best <= set(members) and self.score(members) > top - FAR
         ]
-        return [self.fits[members] for members in sorted(rivals, key=self.score)[-RIVALS:]]
+        return [self.fits[members] for members in sorted(unfinished, key=self.score)[-UNFINISHED:]]
 
     def _hidden_rivals(self) -> list[FittedSet]:
         """Starts for sets near the best one whose own fits ended far from their best points.
