@@ -175,9 +175,9 @@ class _Progress:
         of_none = problem.linear_score(about, ())
         for score, members in screened(problem, about):
             if members:
-                self._judged(problem.ordered(members), self.score(()) + score - of_none)
+                self._raise_estimate(problem.ordered(members), self.score(()) + score - of_none)
 
-    def _judged(self, members: Members, value: float) -> None:
+    def _raise_estimate(self, members: Members, value: float) -> None:
         """An estimate of a set from the fit of a subset. With estimates from two subsets, the larger one counts."""
         known, judged = self._estimate.get(members, (0.0, False))
         self._estimate[members] = (max(value, known) if judged else value, True)
@@ -239,7 +239,7 @@ class _Progress:
         for candidate in others:
             more = problem.ordered((*members, candidate))
             gain = criterion.of_linear(about, (candidate,)) - of_part + problem.prior(more) - problem.prior(members)
-            self._judged(more, self.score(members) + gain)
+            self._raise_estimate(more, self.score(members) + gain)
 
     def promising(self) -> list[Members]:
         """Sets without a fit that may be the best set, best estimate first."""
