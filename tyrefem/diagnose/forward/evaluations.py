@@ -6,7 +6,6 @@ import pickle
 import shutil
 import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import Executor, as_completed
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import partial
@@ -19,9 +18,9 @@ from numpy.typing import NDArray
 from tyrefem.brief import Brief
 from tyrefem.cache import Cache
 from tyrefem.diagnose.forward.forward_model import ForwardModel
+from tyrefem.diagnose.forward.worker_queues import HomedTask, WorkerQueues, worker_queues
 from tyrefem.inputs.study import StudyData
 from tyrefem.output import jsonable, versions
-from tyrefem.processes import processes
 from tyrefem.variants.answer_store import AnswerStore, digest, effects_source, plain, study_digest
 
 if TYPE_CHECKING:
@@ -96,7 +95,7 @@ def _ready() -> None:
 class WorkerModels:
     """Worker processes that evaluate one forward model after another; ``folder``: for what they share."""
 
-    pool: Executor
+    queues: WorkerQueues
     folder: Path
     count: int = 0
 
@@ -117,10 +116,9 @@ def worker_models(count: int) -> Iterator[WorkerModels | None]:
     if count <= 1:
         yield None
         return
-    with tempfile.TemporaryDirectory(prefix="tyrefem-") as folder, processes(count) as pool:
-        for _ in range(count):
-            pool.submit(_ready)
-        yield WorkerModels(pool, Path(folder))
+    with tempfile.TemporaryDirectory(prefix="tyrefem-") as folder, worker_queues(count) as queues:
+        queues.start(_ready)
+        yield WorkerModels(queues, Path(folder))
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,7 +129,7 @@ class Evaluations(Brief):
     """
 
     model: ForwardModel
-    pool: Executor | None = None
+    queues: WorkerQueues | None = None
     store: ProgressStore | None = None
     file: Path | None = None
 
@@ -166,16 +164,25 @@ class Evaluations(Brief):
         return [_HISTORIES.get(key, partial(history, key, study)) for key, study in zip(keys, studies, strict=True)]
 
     def _answers(self, name: str, questions: Mapping[int, tuple[Any, ...]]) -> Iterator[tuple[int, Any]]:
-        """Yield (number of the question, result) as the results become ready."""
-        if self.pool is None:
+        """Yield (number of the question, result) as the results become ready.
+
+        The questions of a drive go to the worker that has its simulations, unless another one is idle.
+        """
+        if self.queues is None:
             for number, arguments in questions.items():
                 yield number, getattr(self.model, name)(*arguments)
             return
-        futures = {
-            self.pool.submit(_task, self.file, name, arguments): number for number, arguments in questions.items()
-        }
-        for future in as_completed(futures):
-            yield futures[future], future.result()
+        yield from self.queues.results(
+            {
+                number: HomedTask(_home(number, arguments), _task, (self.file, name, arguments))
+                for number, arguments in questions.items()
+            }
+        )
+
+
+def _home(number: int, arguments: tuple[Any, ...]) -> int:
+    """The number of the drive that a question is about; of the question if it is about none."""
+    return arguments[0] if isinstance(arguments[0], int) else number
 
 
 @contextmanager
@@ -185,7 +192,7 @@ def evaluating(
     """Evaluations of a model in ``workers`` processes, or in those of ``pool``; 1: in this process."""
     if pool is not None:
         shared, file = pool.take(model)
-        yield Evaluations(shared, pool.pool, store, file)
+        yield Evaluations(shared, pool.queues, store, file)
         return
     with worker_models(workers) as pool:
         if pool is None:

@@ -1,0 +1,60 @@
+"""Tasks for worker processes: at home where what they need was made, elsewhere if a worker is idle."""
+
+from __future__ import annotations
+
+import os
+import time
+from pathlib import Path
+
+import pytest
+
+from tyrefem.diagnose.forward.worker_queues import HomedTask, WorkerQueues, worker_queues
+
+
+def meet(folder: Path, name: str, guests: int) -> bool:
+    """Whether so many tasks run at the same time: each waits for the others, at most a minute."""
+    (folder / name).touch()
+    latest = time.monotonic() + 60.0
+    while (here := len(list(folder.iterdir()))) < guests and time.monotonic() < latest:
+        time.sleep(0.01)
+    return here >= guests
+
+
+def process_of(folder: Path, name: str, guests: int) -> int:
+    """The process that does a task, once ``guests`` tasks run at the same time."""
+    assert meet(folder, name, guests)
+    return os.getpid()
+
+
+def fail() -> None:
+    """A task that fails."""
+    raise ValueError("a tyre of glass")
+
+
+def processes_of(queues: WorkerQueues, folder: Path) -> dict[int, int]:
+    """Number of the task -> process, for a task at home in each of two workers."""
+    folder.mkdir()
+    return dict(queues.results({home: HomedTask(home, process_of, (folder, str(home), 2)) for home in (0, 1)}))
+
+
+def test_a_task_goes_to_the_worker_that_is_its_home(tmp_path: Path) -> None:
+    with worker_queues(2) as queues:
+        first, again = processes_of(queues, tmp_path / "first"), processes_of(queues, tmp_path / "again")
+    assert first == again
+    assert len({*first.values(), os.getpid()}) == 3
+
+
+def test_an_idle_worker_helps(tmp_path: Path) -> None:
+    with worker_queues(2) as queues:
+        tasks = {number: HomedTask(0, meet, (tmp_path, str(number), 2)) for number in range(2)}
+        assert dict(queues.results(tasks)) == {0: True, 1: True}
+
+
+def test_the_error_of_a_task_is_raised_and_the_workers_end() -> None:
+    with pytest.raises(ValueError, match="a tyre of glass"), worker_queues(2) as queues:
+        list(queues.results({0: HomedTask(0, os.getpid, ()), 1: HomedTask(1, fail, ())}))
+
+
+def test_no_tasks_have_no_results() -> None:
+    with worker_queues(1) as queues:
+        assert list(queues.results({})) == []
