@@ -7,7 +7,13 @@ source q0 exp(-0.0148 (T - 25)) heats up from 25 degC for 1200 s.
 - plain: scikit-fem assembly, `scipy.sparse.linalg.splu` with its defaults, backward Euler at 1 s, nodal source.
 
 Both are compared with a run at 1e-5 K. Prints a table and, as the last line, one JSON object.
-Usage: python benchmarks/conduction.py [--quick] [--repeat N]
+
+With --peers PETSc solves the same matrices (`petsc_peers.py`): by a Cholesky factor with steps of 1 s, and by its
+adaptive Rosenbrock-W method. Our time at a peer's error is interpolated between our runs at several tolerances.
+
+With --save they also write docs/evidence/tables/conduction-peers.csv and docs/pictures/conduction-peers.png.
+
+Usage: python benchmarks/conduction.py [--quick] [--repeat N] [--peers [PYTHON] [--save]]
 """
 
 # ruff: noqa: E402 - the number of BLAS threads must be set before numpy is loaded.
@@ -20,11 +26,16 @@ for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
 
 import argparse
 import json
+import subprocess
+import sys
+import tempfile
 import time
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 import skfem
+from scipy.sparse import csr_matrix
 from scipy.sparse.linalg import splu
 from skfem.helpers import dot, grad
 
@@ -34,6 +45,12 @@ END, OUTPUTS = 1200.0, np.array([0.0, 60.0, 200.0, 433.0, 777.0, 1200.0])
 CARCASS, TREAD = Material(0.25, 2.1e6), Material(0.21, 2.09e6)
 INSIDE, OUTSIDE, ROAD = Film(6.0, 40.0), Film(20.0, 25.0), Film(150.0, 30.0)
 FORM = {"carcass": 1.5e5, "tread": 2.5e5}
+
+
+#: Our tolerances and those of PETSc's adaptive method, K, for curves of time over error.
+TOLERANCES, PEER_TOLERANCES = (0.3, 0.1, 0.03, 0.01, 0.003), (0.1, 0.03, 0.01, 0.003, 0.001)
+#: Where Debian keeps petsc4py.
+DEBIAN = "petscdir/*/*/lib/python3/dist-packages"
 
 
 @dataclass
@@ -100,33 +117,40 @@ def ours(mesh, tolerance: float = 0.01):
     return Timing(assembled - start, factor, end - assembled - factor), history
 
 
-def plain(mesh, step: float = 1.0):
-    """What one writes with scikit-fem in an afternoon: 1200 backward-Euler steps, one SuperLU factorisation."""
-    mesh = fresh(mesh)
-    start = time.perf_counter()
+def equation(mesh):
+    """M, S, f and (M_r, region) of M du/dt = -S u + f + sum M_r q, by scikit-fem."""
     element = skfem.ElementTriP1()
     mass = skfem.BilinearForm(lambda u, v, w: 2 * np.pi * w.x[0] * u * v)
     conduct = skfem.BilinearForm(lambda u, v, w: 2 * np.pi * w.x[0] * dot(grad(u), grad(v)))
     load = skfem.LinearForm(lambda v, w: 2 * np.pi * w.x[0] * v)
-    M = K = 0
+    M = S = 0
     sources = []
     for name, material in (("carcass", CARCASS), ("tread", TREAD)):
         basis = skfem.Basis(mesh, element, elements=name)
         m = mass.assemble(basis)
         M = M + material.heat_capacity * m
-        K = K + material.conductivity * conduct.assemble(basis)
-        sources.append((m, law(name)))
-    f = np.zeros(K.shape[0])
+        S = S + material.conductivity * conduct.assemble(basis)
+        sources.append((m, name))
+    f = np.zeros(S.shape[0])
     for name, film in (("inside", INSIDE), ("outside", OUTSIDE), ("road", ROAD)):
         basis = skfem.FacetBasis(mesh, element, facets=name)
-        K = K + film.h * mass.assemble(basis)
+        S = S + film.h * mass.assemble(basis)
         f += film.h * film.sink * load.assemble(basis)
-    A = (M / step + K).tocsc()
+    return M, S, f, sources
+
+
+def plain(mesh, step: float = 1.0):
+    """What one writes with scikit-fem in an afternoon: 1200 backward-Euler steps, one SuperLU factorisation."""
+    mesh = fresh(mesh)
+    start = time.perf_counter()
+    M, S, f, regions = equation(mesh)
+    sources = [(m, law(name)) for m, name in regions]
+    A = (M / step + S).tocsc()
     M = (M / step).tocsr()
     assembled = time.perf_counter()
     lu = splu(A)
     factored = time.perf_counter()
-    u = np.full(K.shape[0], 25.0)
+    u = np.full(S.shape[0], 25.0)
     values = [u]
     for i in range(round(END / step)):
         right = f + M @ u
@@ -136,6 +160,99 @@ def plain(mesh, step: float = 1.0):
         if np.any(np.isclose(OUTPUTS, (i + 1) * step)):
             values.append(u)
     return Timing(assembled - start, factored - assembled, time.perf_counter() - factored), np.array(values)
+
+
+def on_pattern(pattern: csr_matrix, matrix: csr_matrix):
+    """Values of a matrix on a larger pattern."""
+    matrix.sum_duplicates()
+
+    def places(A):
+        return np.repeat(np.arange(A.shape[0], dtype=np.int64), np.diff(A.indptr)) * A.shape[1] + A.indices
+
+    values = np.zeros(pattern.nnz)
+    values[np.searchsorted(places(pattern), places(matrix))] = matrix.data
+    return values
+
+
+def peers(mesh, reference, repeat: int, python: str) -> list[tuple[str, float, float]]:
+    """(solver, seconds of factors and steps, error in K) of PETSc on the same matrices."""
+    M, S, f, sources = equation(mesh)
+    pattern = (abs(M) + abs(S)).tocsr()
+    pattern.sort_indices()
+    given = {
+        "indptr": pattern.indptr, "indices": pattern.indices, "M": on_pattern(pattern, M), "S": on_pattern(pattern, S),
+        "sources": np.array([on_pattern(pattern, m) for m, _ in sources]), "q0": [FORM[name] for _, name in sources],
+        "load": f, "times": OUTPUTS, "tolerances": PEER_TOLERANCES, "repeat": repeat,
+    }  # fmt: skip
+    with tempfile.TemporaryDirectory() as folder:
+        system, answers = Path(folder) / "system.npz", Path(folder) / "answers.npz"
+        np.savez(system, **given)
+        debian = [str(path) for path in Path("/usr/lib").glob(DEBIAN)]
+        environment = {**os.environ, "PYTHONPATH": os.pathsep.join(debian)}
+        program = [python, str(Path(__file__).with_name("petsc_peers.py")), str(system), str(answers)]
+        if subprocess.run(program, env=environment, check=False).returncode:
+            sys.exit(f"{python} has no petsc4py that works; on Debian: apt install python3-petsc4py-real")
+        with np.load(answers) as made:
+            return [
+                (str(name), float(seconds), float(np.abs(values - reference).max()))
+                for name, seconds, values in zip(made["names"], made["seconds"], made["values"], strict=True)
+            ]
+
+
+def beside_peers(nodes: int, repeat: int, python: str) -> list[dict]:
+    """Rows of every run, ours at several tolerances and the peers': seconds, error, and the ratio to ours there."""
+    mesh = section(nodes)
+    _, tight = ours(mesh, 1e-5)
+    rows = []
+    for tolerance in TOLERANCES:
+        best, history = min((ours(mesh, tolerance) for _ in range(repeat)), key=lambda run: run[0].total)
+        off = float(np.abs(history.values - tight.values).max())
+        rows.append(
+            {"solver": "tyrefem", "run": f"{tolerance:g} K", "seconds": best.total, "error_K": off, "ratio": 1.0}
+        )
+    error, seconds = np.log(np.array(sorted((row["error_K"], row["seconds"]) for row in rows)).T)
+    for name, took, off in peers(mesh, tight.values, repeat, python):
+        here = float(np.exp(np.interp(np.log(off), error, seconds)))
+        solver, run = name.split(", ", 1)
+        rows.append({"solver": solver, "run": run, "seconds": took, "error_K": off, "ratio": took / here})
+    count = int(mesh.p.shape[1])
+    for row in rows:
+        print(
+            f"{count:7d} {row['solver']:<16}{row['run']:<24}{row['seconds']:9.4f} s{row['error_K']:11.5f} K"
+            f"{row['ratio']:8.2f} times ours at this error",
+            flush=True,
+        )
+    return [{"nodes": count, **row} for row in rows]
+
+
+def save_peers(rows: list[dict]) -> None:
+    """Write the table and the picture of the runs beside PETSc."""
+    import matplotlib
+
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+    import pandas as pd
+
+    docs = Path(__file__).resolve().parents[1] / "docs"
+    table = pd.DataFrame(rows)
+    table.to_csv(docs / "evidence/tables/conduction-peers.csv", index=False, float_format="%.4g", lineterminator="\n")
+    figure, axes = plt.subplots(figsize=(7, 4.2), layout="constrained")
+    styles = {"tyrefem": ("#1f6f8b", "o-"), "TSROSW ra34pw2": ("#c8553d", "s--"), "Cholesky": ("#777777", "^")}
+    for (nodes, solver), part in table.groupby(["nodes", "solver"]):
+        color, style = styles[solver]
+        label = f"PETSc {solver}" if solver != "tyrefem" else solver
+        first = nodes == table["nodes"].min()
+        axes.loglog(part["error_K"], part["seconds"], style, color=color, ms=4, label=label if first else None)
+        if solver == "tyrefem":
+            last = part.loc[part["error_K"].idxmin()]
+            axes.annotate(
+                f"{nodes:,} nodes", (last["error_K"], last["seconds"]), (-6, 3), textcoords="offset points", ha="right"
+            )
+    axes.set(xlabel="largest error at six times, K", ylabel="seconds, one core")
+    axes.set_xlim(left=table["error_K"].min() / 4)
+    axes.legend(frameon=False)
+    axes.grid(which="major", color="#dddddd")
+    figure.savefig(docs / "pictures/conduction-peers.png", dpi=130)
 
 
 def measure(nodes: int, repeat: int) -> dict:
@@ -155,9 +272,25 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--quick", action="store_true", help="1k, 2k and 5k nodes only")
     parser.add_argument("--repeat", type=int, default=0, help="best of so many runs (default 3, quick 1)")
+    parser.add_argument(
+        "--peers", nargs="?", const="/usr/bin/python3", metavar="PYTHON",
+        help="beside PETSc alone, run by a Python with petsc4py (default /usr/bin/python3)",
+    )  # fmt: skip
+    parser.add_argument("--save", action="store_true", help="of --peers: write the table and the picture of the docs")
     options = parser.parse_args()
     sizes = [1000, 2000, 5000] if options.quick else [2000, 10000, 50000]
     repeat = options.repeat or (1 if options.quick else 3)
+    if options.peers:
+        ours(section(400))
+        runs = [row for nodes in sizes for row in beside_peers(nodes, repeat, options.peers)]
+        ratios: dict[str, dict[int, float]] = {}
+        for row in runs:
+            of_solver = ratios.setdefault(row["solver"], {})
+            of_solver[row["nodes"]] = round(min(row["ratio"], of_solver.get(row["nodes"], np.inf)), 2)
+        if options.save:
+            save_peers(runs)
+        print(json.dumps({"smallest ratio": ratios}))
+        return
     print(f"{'nodes':>7} {'solver':<28}{'assembly':>9}{'factor':>9}{'stepping':>9}{'total s':>9}{'error K':>10}")
     rows = {}
     measure(400, 1)
