@@ -85,6 +85,8 @@ def save_work(rows: list[dict[str, Any]]) -> None:
                     f"{row.size_mm:g}", (row.processor_s, row.deviation_K), (4, 3), textcoords="offset points", size=8
                 )
         axes.set(title=name, xlabel="processor time of a run, s")
+        axes.set_xticks([0.05, 0.1, 0.2, 0.5, 1.0], ["0.05", "0.1", "0.2", "0.5", "1"])
+        axes.minorticks_off()
         axes.grid(which="major", color="#dddddd")
     panels[0].set_ylabel("largest error of a sensor, K")
     panels[0].legend(frameon=False, title="elements; size in mm")
