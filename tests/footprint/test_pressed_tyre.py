@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -46,6 +47,13 @@ def test_the_revolved_tyre_is_whole_and_not_folded(pressed: Pressed, grid: pyvis
         assert volumes[here].sum() == pytest.approx(2 * section.volume(region), rel=0.02)
     surface = grid.extract_surface(algorithm="dataset_surface").clean()
     assert surface.n_points - surface.extract_all_edges().n_cells + surface.n_cells == 0
+
+
+def test_words_tell_whether_the_tolerance_is_met(pressed: Pressed) -> None:
+    error, words = pressed.footprint.error, f"{pressed.footprint.harmonics}, error {pressed.footprint.error:.2%} "
+    assert pressed.accuracy == f"{words}(allowed 2%)"
+    missed = replace(pressed, tolerance=0.5 * error).accuracy
+    assert missed.startswith(f"{words}(more than the {50 * error:.3g}% wanted")
 
 
 def test_the_axes_turn_and_do_not_mirror(pressed: Pressed) -> None:

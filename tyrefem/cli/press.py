@@ -189,8 +189,7 @@ def _words(result: Pressed) -> str:
         if loss is None
         else f"  rolling resistance  {loss.rolling_resistance:.1f} N, coefficient {loss.coefficient:.5f} at "
         f"{result.speed:.4g} m/s and {loss.temperature:.4g} degC",
-        f"  harmonics           {footprint.harmonics}, error {footprint.error:.2%} (allowed {result.tolerance:.0%}); "
-        f"{tyre.body.rings.n_nodes} nodes",
+        f"  harmonics           {result.accuracy}; {tyre.body.rings.n_nodes} nodes",
         f"  motion              {motion_words(footprint.motion, result.linearisation_error)}",
     ]
     if result.turning is not None:

@@ -100,6 +100,14 @@ class Pressed(Brief):
         return float(self.footprint.pressure.max())
 
     @property
+    def accuracy(self) -> str:
+        """Number of harmonics and error, in words; in large motion the number has a limit, whatever the tolerance."""
+        footprint, allowed = self.footprint, f"{100 * self.tolerance:.3g}%"
+        more = f"more than the {allowed} wanted: large motion takes no more harmonics"
+        verdict = more if footprint.error > self.tolerance else f"allowed {allowed}"
+        return f"{footprint.harmonics}, error {footprint.error:.2%} ({verdict})"
+
+    @property
     def speed(self) -> float:
         """Speed at the start of the drive's first phase, m/s; at its end if it starts at rest."""
         return speed_of(self.study)
