@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import copy
 import functools
+import re
 import tomllib
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -160,7 +161,8 @@ def _one_error(error: ValidationError, file: str | Path | None) -> InputError:
     elif first["type"] == "union_tag_not_found":
         message = "missing key 'law'"
     elif first["type"] == "literal_error":
-        message = f"{first['input']!r:.60} is not allowed; allowed: {first['ctx']['expected']}"
+        allowed = re.findall(r"'([^']+)'", first["ctx"]["expected"])
+        message = f"{first['input']!r:.60} is not allowed{nearest(str(first['input']), allowed)}"
     return InputError(message, field=field or None, file=file)
 
 

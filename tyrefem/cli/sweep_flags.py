@@ -17,6 +17,16 @@ if TYPE_CHECKING:
     from tyrefem.variants.schedulers import Scheduler
 
 
+#: Keys of a sweep file that a flag of one word gives.
+FLAGS = {
+    key: f"--{flag}"
+    for key, flag in {
+        "uncertain": "uncertain", "sample": "sample", "count": "count", "seed": "seed", "cases": "cases",
+        "time_to": "time-to", "answers": "answer",
+    }.items()
+}  # fmt: skip
+
+
 def questions_of_flags(
     *,
     vary: list[str] | None = None,
@@ -226,7 +236,11 @@ def questions(
         known = [*library.names("study"), *library.names("sweep")]
         raise InputError(f"no study or sweep named '{name}'{nearest(name, known)}")
     study = load(name, changes, case)
-    return study.name, design.questions(study, SweepCard.check({"study": name, **given}), Path())
+    try:
+        card = SweepCard.check({"study": name, **given})
+    except InputError as error:
+        raise error if error.field not in FLAGS else InputError(error.message, field=FLAGS[error.field]) from None
+    return study.name, design.questions(study, card, Path())
 
 
 class _InterruptedError(Exception):

@@ -44,9 +44,9 @@ def check_effects(study: CheckedStudy) -> None:
         if problem is not None:
             raise InputError(problem, field=f"effects.{effect.name}", file=study.file)
     excluded = study.card.diagnosis.exclude
-    unknown = [name for name in excluded if name not in catalogue()] if excluded else []
-    if unknown:
-        wrong = f"unknown effects {quoted(unknown, catalogue())}; 'tyrefem list effects' names them all"
+    known = catalogue() if excluded else {}
+    if unknown := [name for name in excluded if name not in known]:
+        wrong = f"unknown effects {quoted(unknown, known)}; 'tyrefem list effects' names them all"
         raise InputError(wrong, field="diagnosis.exclude", file=study.file)
 
 
