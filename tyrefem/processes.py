@@ -16,11 +16,10 @@ from typing import Any
 from threadpoolctl import threadpool_limits
 
 from tyrefem.interruption import interruption_delayed
+from tyrefem.threads import VARIABLES
 
 #: Python's option that hides the tracker's warning.
 LEFT_BEHIND = "ignore:resource_tracker:UserWarning"
-#: Environment variables from which libraries for linear algebra take their number of threads when they are loaded.
-THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 
 class _ProcessWithoutCtrlC(SpawnProcess):
@@ -84,7 +83,7 @@ def _begin(begin: Callable[..., None] | None, given: tuple[Any, ...]) -> None:
     threading.Thread(target=_end_with_parent, daemon=True).start()
     # Libraries that are loaded already, and those that the first task loads.
     threadpool_limits(1, user_api="blas")
-    os.environ.update(dict.fromkeys(THREADS, "1"))
+    os.environ.update(dict.fromkeys(VARIABLES, "1"))
     if begin is not None:
         begin(*given)
 

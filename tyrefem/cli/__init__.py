@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from tyrefem.cli.ctrl_c import INTERRUPTED, CtrlC, interruption_in, interruption_message
 from tyrefem.cli.line import fail
+from tyrefem.threads import one_thread_by_default
 
 if TYPE_CHECKING:
     from tyrefem.cli.commands import app
@@ -32,6 +33,8 @@ def main(arguments: list[str] | None = None) -> int:
     """
     # Imports make many objects and no garbage: a collection every 700 objects takes a tenth of a short run.
     gc.set_threshold(100_000)
+    if arguments is None:
+        one_thread_by_default()
     with CtrlC(leaves=arguments is None) as ctrl_c:
         message, code = _run(arguments, ctrl_c)
         if message:

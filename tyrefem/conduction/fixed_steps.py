@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.conduction.balance import HeatBalance
-from tyrefem.conduction.linear_solver import one_thread
 from tyrefem.conduction.terms import State
 from tyrefem.errors import InputError
+from tyrefem.threads import one_thread
 
 if TYPE_CHECKING:
     from tyrefem.conduction.problem import Conduction

@@ -6,7 +6,6 @@ A banded Cholesky factor solves many right-hand sides by blocks, with products o
 from __future__ import annotations
 
 import functools
-from contextlib import AbstractContextManager
 from typing import Any
 
 import numpy as np
@@ -16,7 +15,6 @@ from scipy.linalg import get_lapack_funcs
 from scipy.sparse import csc_matrix, csr_matrix
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 from scipy.sparse.linalg import splu
-from threadpoolctl import ThreadpoolController
 
 from tyrefem.conduction.errors import SolverError
 
@@ -88,19 +86,6 @@ _MANY = 16
 
 # Seconds per unit of work on one core: banded flop, banded byte moved, and SuperLU per unknown.
 _FLOP, _BYTE, _SPARSE_FACTOR, _SPARSE_SOLVE = 1.2e-10, 1.2e-10, 8e-6, 2.1e-7
-
-
-@functools.cache
-def _libraries() -> ThreadpoolController:
-    return ThreadpoolController()
-
-
-def one_thread() -> AbstractContextManager[Any]:
-    """Context in which BLAS uses one thread: band solves are too small for several, and the library search is slow.
-
-    On a busy machine waiting threads take ten times the time of the work.
-    """
-    return _libraries().limit(limits=1, user_api="blas")
 
 
 class Ordering:

@@ -20,7 +20,6 @@ from tyrefem.conduction.conditions import (
     is_number,
 )
 from tyrefem.conduction.field import Field, History, Steps
-from tyrefem.conduction.linear_solver import one_thread
 from tyrefem.conduction.operators import operators_of
 from tyrefem.conduction.statement import balance_of, check_partition
 from tyrefem.conduction.steady import anchored, solve_steady
@@ -28,6 +27,7 @@ from tyrefem.conduction.terms import State
 from tyrefem.conduction.transient import Integration
 from tyrefem.errors import InputError, nearest
 from tyrefem.estimates.work import check_memory, history, matrices, rounded_down, smallest_tolerance
+from tyrefem.threads import one_thread
 
 Array = NDArray[Any]
 

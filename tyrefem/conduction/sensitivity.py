@@ -14,12 +14,12 @@ from scipy.sparse import csr_matrix
 from tyrefem.conduction.balance import HeatBalance
 from tyrefem.conduction.direct_sensitivity import DirectHeat
 from tyrefem.conduction.fixed_steps import GAMMA, StageSolver
-from tyrefem.conduction.linear_solver import one_thread
 from tyrefem.conduction.operators import Operators
 from tyrefem.conduction.points import located
 from tyrefem.conduction.sources import SourceLoad
 from tyrefem.conduction.terms import State
 from tyrefem.errors import InputError
+from tyrefem.threads import one_thread
 
 if TYPE_CHECKING:
     from tyrefem.conduction.problem import Conduction

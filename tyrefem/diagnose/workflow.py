@@ -11,7 +11,6 @@ from typing import Any, Unpack
 
 from tyrefem.brief import Brief
 from tyrefem.compare.experiment import ColumnNames, Table, experiments
-from tyrefem.conduction.linear_solver import one_thread
 from tyrefem.diagnose.amend import Change, amended, changes
 from tyrefem.diagnose.beside.best_fit import fit_beside, not_asked_for
 from tyrefem.diagnose.beside.free_heat import free_heat
@@ -74,6 +73,7 @@ from tyrefem.diagnose.verdicts.verdict import (
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
 from tyrefem.requirements import Requirements
+from tyrefem.threads import one_thread
 
 #: What a study must have for a diagnosis.
 NEEDS = Requirements("a diagnosis", measured=True, fitted=True)

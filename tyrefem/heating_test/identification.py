@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
-from threadpoolctl import threadpool_limits
 
 from tyrefem.brief import Brief
 from tyrefem.heating_test.card import RigCard, load
@@ -22,6 +21,7 @@ from tyrefem.heating_test.parameters import PROPERTY, RIG, SLOPE, Parameters, pa
 from tyrefem.heating_test.readings import HeatingTest, read
 from tyrefem.heating_test.selection import ParameterEstimate, Selection, estimate_of, select
 from tyrefem.heating_test.twin import Twin
+from tyrefem.threads import one_thread
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -107,7 +107,7 @@ def identify(
     card, file = (rig, None) if isinstance(rig, RigCard) else load(rig)
     heating_tests = tuple(tests) or read(card, tables if file is None else beside(card, file, tables), without)
     # The matrices are too small for threads: on a busy machine, waiting for threads takes longer than the work.
-    with threadpool_limits(1, user_api="blas"):
+    with one_thread():
         sensors = tuple(series.sensor for series in heating_tests[0].series)
         fitter = Fitter(Twin(card, sensors, fineness or USUAL), heating_tests, progress)
         return _identified(card, file, fitter, linear)

@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from threadpoolctl import threadpool_limits
 
 from tyrefem.errors import InputError
 from tyrefem.estimates.work import check_readings
@@ -19,6 +18,7 @@ from tyrefem.heating_test.parameters import parameters_of
 from tyrefem.heating_test.twin import Twin
 from tyrefem.heating_test.verdict import HOT
 from tyrefem.measured import MeasuredRun
+from tyrefem.threads import one_thread
 
 Array = NDArray[Any]
 #: Largest number of readings per sensor.
@@ -108,7 +108,7 @@ def simulate(
     noise = np.array([card.sensors[name].noise for name in sensors])
     runs, kept = {}, {}
     for name, run in card.runs.items():
-        with threadpool_limits(1, user_api="blas"):
+        with one_thread():
             kept[name] = twin.fields(numbers, run, clock)
         readings = matrix @ twin.readings_of_fields(numbers, clock, kept[name])
         if seed is not None:

@@ -7,8 +7,10 @@ from tyrefem.simulation.estimate import RunEstimate
 from tyrefem.simulation.result import ResultData
 from tyrefem.simulation.rolling_tyre import RollingTyre
 from tyrefem.simulation.simulate import simulate
+from tyrefem.threads import one_thread
 
 
+@one_thread()
 def run(
     study: StudyData,
     progress: Callable[[float], None] | None = None,

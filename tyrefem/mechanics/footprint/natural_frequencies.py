@@ -20,6 +20,7 @@ from tyrefem.mechanics.footprint.pressed_tyre import mechanical_mesh
 from tyrefem.mechanics.footprint.vibration import Mode, Vibration
 from tyrefem.mechanics.solid.stiffened import stiffened
 from tyrefem.requirements import Requirements
+from tyrefem.threads import one_thread
 
 if TYPE_CHECKING:
     from tyrefem.inputs.study import StudyData
@@ -147,6 +148,7 @@ def moving_mass(vibration: Vibration) -> float:
     return float(2 * np.pi * (vibration.density * vibration.harmonics.elements.weights).sum())
 
 
+@one_thread()
 def natural_frequencies(
     study: StudyData,
     harmonics: Iterable[int] = HARMONICS,

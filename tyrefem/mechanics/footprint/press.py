@@ -22,6 +22,7 @@ from tyrefem.mechanics.footprint.pressed_tyre import TOLERANCE, mechanical_mesh
 from tyrefem.mechanics.footprint.road import Road
 from tyrefem.mechanics.footprint.secant_moduli import SecantModuli, under_load
 from tyrefem.requirements import Requirements
+from tyrefem.threads import one_thread
 
 if TYPE_CHECKING:
     from tyrefem.geometry.meshing.mesh import TyreMesh
@@ -263,6 +264,7 @@ def speed_of(study: StudyData) -> float:
     return motion_in(phase, 0.0).speed or motion_in(phase, 1.0).speed
 
 
+@one_thread()
 def press(
     study: StudyData,
     *,

@@ -15,6 +15,7 @@ from tyrefem.brief import Brief
 from tyrefem.errors import InputError, ResultWarning
 from tyrefem.mechanics.footprint.loss import RevolutionLoss
 from tyrefem.mechanics.rolling.press import press
+from tyrefem.threads import one_thread
 
 if TYPE_CHECKING:
     from tyrefem.inputs.study import StudyData
@@ -161,6 +162,7 @@ def check(study: StudyData) -> None:
         )
 
 
+@one_thread()
 def amplification(
     study: StudyData,
     critical: float,

@@ -18,6 +18,7 @@ from tyrefem.mechanics.footprint.pressed_tyre import mechanical_mesh
 from tyrefem.mechanics.footprint.vibration import Vibration
 from tyrefem.mechanics.rolling.standing_waves import CriticalWave, SteadyWaves
 from tyrefem.requirements import Requirements
+from tyrefem.threads import one_thread
 
 if TYPE_CHECKING:
     from tyrefem.geometry.meshing.mesh import TyreMesh
@@ -117,6 +118,7 @@ class CriticalSpeed(Brief):
         }
 
 
+@one_thread()
 def critical_speed(
     study: StudyData,
     *,

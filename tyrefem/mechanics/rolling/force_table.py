@@ -15,6 +15,7 @@ from tyrefem.errors import InputError
 from tyrefem.mechanics.rolling.roll import HARMONICS, WheelOnRoad, driven, row, swept, wheel_on_road
 from tyrefem.mechanics.rolling.rolled import RolledTyre
 from tyrefem.mechanics.rolling.rolling_motion import RollingMotion
+from tyrefem.threads import one_thread
 from tyrefem.tyre_forces.fitting import MagicFormulaFit, fit_magic_formula
 from tyrefem.tyre_forces.points import ForcePoints
 from tyrefem.tyre_forces.property_file import TyreDimensions
@@ -108,6 +109,7 @@ class TyreForces(Brief):
         )
 
 
+@one_thread()
 def tyre_forces(
     study: StudyData,
     *,

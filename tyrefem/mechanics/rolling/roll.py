@@ -26,6 +26,7 @@ from tyrefem.mechanics.rolling.steady_rolling import FrictionLaw, RollingLoads, 
 from tyrefem.mechanics.rolling.tread_influence import TreadInfluence
 from tyrefem.mechanics.rolling.turning import Turning, lossy_harmonics
 from tyrefem.requirements import Requirements
+from tyrefem.threads import one_thread
 
 if TYPE_CHECKING:
     from tyrefem.inputs.study import StudyData
@@ -205,6 +206,7 @@ def tread_friction(pressed: Pressed, temperature: float | None = None) -> float 
     return lambda speed, pressure: law(speed, pressure, warm)
 
 
+@one_thread()
 def wheel_on_road(
     study: StudyData,
     *,
@@ -256,6 +258,7 @@ def _lossy_points(pressed: Pressed) -> TreadInfluence | None:
     return TreadInfluence(TreadCompliance(lossy_harmonics(pressed.study, pressed.tyre, pressed.footprint)))
 
 
+@one_thread()
 def roll(
     study: StudyData,
     *,

@@ -25,6 +25,7 @@ from tyrefem.mechanics.footprint.natural_frequencies import (
 )
 from tyrefem.mechanics.footprint.pressed_tyre import mechanical_mesh
 from tyrefem.mechanics.footprint.vibration import Mode, Vibration
+from tyrefem.threads import one_thread
 
 if TYPE_CHECKING:
     from tyrefem.inputs.study import StudyData
@@ -137,6 +138,7 @@ class RotatingFrequencies(NaturalFrequencies):
         return {**super().summary(), "angular_speed_rad_s": self.angular_speed}
 
 
+@one_thread()
 def rotating_frequencies(
     study: StudyData, speed: float, harmonics: Iterable[int], **options: Any
 ) -> RotatingFrequencies:

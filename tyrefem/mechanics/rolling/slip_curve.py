@@ -29,6 +29,7 @@ from tyrefem.mechanics.rolling.roll import (
 from tyrefem.mechanics.rolling.rolled import RolledTyre
 from tyrefem.mechanics.rolling.rolling_motion import RollingMotion
 from tyrefem.mechanics.rolling.standing import StandingStiffness, StandingTyre
+from tyrefem.threads import one_thread
 
 if TYPE_CHECKING:
     from tyrefem.inputs.study import StudyData
@@ -156,6 +157,7 @@ def slip_stiffness(wheel: WheelOnRoad, harmonics: int) -> SlipStiffness:
     )
 
 
+@one_thread()
 def slip_curve(
     study: StudyData,
     *,

@@ -1,0 +1,45 @@
+"""Threads of linear algebra: one, because several mostly wait for each other.
+
+The matrices of a tyre are small. On two idle cores a second thread saves no time and takes 1.3 to 1.9 times the
+processor time; beside another busy process a press took 4.5 times as long with it. docs/evidence/performance.md
+"""
+
+from __future__ import annotations
+
+import functools
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from threadpoolctl import ThreadpoolController
+
+#: Environment variables from which libraries for linear algebra take their number of threads when they are loaded.
+VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+
+
+def one_thread_by_default() -> None:
+    """Give libraries that are loaded from now on one thread, unless the environment names a number."""
+    if not any(name in os.environ for name in VARIABLES):
+        os.environ.update(dict.fromkeys(VARIABLES, "1"))
+
+
+@contextmanager
+def one_thread() -> Iterator[None]:
+    """Context, and decorator, in which linear algebra uses one thread.
+
+    >>> with one_thread():
+    ...     pass
+    """
+    with _libraries().limit(limits=1, user_api="blas"):
+        yield
+
+
+@functools.cache
+def _libraries() -> ThreadpoolController:
+    """The libraries of numpy and scipy; their search takes some milliseconds."""
+    import scipy.linalg  # noqa: F401 - loads them
+    from threadpoolctl import ThreadpoolController
+
+    return ThreadpoolController()
