@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -9,6 +11,7 @@ from tyrefem.mechanics.footprint.contact import Pressing
 from tyrefem.mechanics.footprint.example_tyre import PlainTyre
 from tyrefem.mechanics.footprint.folding import FoldingElements
 from tyrefem.mechanics.footprint.harmonic_balance import Balance
+from tyrefem.mechanics.footprint.large_motion import DeflectedState
 from tyrefem.mechanics.footprint.nonlinear import NonlinearForces, Tangent
 
 N = 4
@@ -91,3 +94,18 @@ def test_the_balance_does_not_depend_on_which_elements_are_convex(pressing: Pres
     convex.motion._folding.reach = np.ones(len(still.response.stress))
     first, second = plain.at_deflection(0.01), convex.at_deflection(0.01)
     assert second.load == pytest.approx(first.load, rel=1e-5)
+
+
+def test_the_stiffness_of_a_folded_state_is_positive(pressing: Pressing) -> None:
+    """The search for its rate breaks off at a negative stiffness; with convex elements it ends."""
+    balance = Balance(pressing, 12, 12, tolerance=1e-4)
+    footprint = balance.at_deflection(0.01)
+    rough = 5e-5 * np.random.default_rng(1).normal(size=footprint.balanced.shape)
+    rough[:, pressing.harmonics.held] = 0.0
+    smooth = DeflectedState(0.01, footprint.balanced, footprint.grid, footprint.forces, footprint.load)
+    assert balance.motion.stiffness(smooth) == pytest.approx(footprint.stiffness, rel=1e-3)
+    assert not balance.motion._folding
+    stiffness = balance.motion.stiffness(replace(smooth, motion=footprint.balanced + rough))
+    assert balance.motion._folding
+    # Roughness stretches the tyre, which makes it stiffer.
+    assert footprint.stiffness < stiffness < 10 * footprint.stiffness

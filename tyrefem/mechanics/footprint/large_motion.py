@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import math
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -299,7 +300,11 @@ class LargeMotion:
 
     def stiffness(self, moment: DeflectedState, accuracy: float = STIFFNESS) -> float:
         """d load / d deflection of a balance, N/m, with a constant contact set: the energy of the rate of motion, to
-        ``accuracy``."""
+        ``accuracy``.
+
+        Elements that fold at the balance have no positive stiffness, and the search for the rate no end: they take part
+        with a convex one, if need be all elements. nan: it has no end even so.
+        """
         _, normal_components, touching, _ = self._road(moment)
         outside = self.nonlinear(moment.harmonics)
         tangent = outside.at(moment.motion, np.float32)
@@ -310,5 +315,14 @@ class LargeMotion:
             start = NewtonStep(motion, np.where(moment.forces > 0, forces, 0.0), 0, np.zeros_like(motion))
         closed = moment.forces > 0
         rate = self._rate(touching, closed, tangent, normal_components, accuracy, rotations, start)
+        if rate.unstable is not None:
+            self._folding.add(tangent, rate.unstable)
+            exact, everywhere = tangent, np.ones(tangent.energies(rate.unstable).shape, dtype=bool)
+            for tangent in (self._folding.convex(exact), exact.convex(everywhere)):
+                rate = self._rate(touching, closed, tangent, normal_components, accuracy, rotations, start)
+                if rate.stable:
+                    break
+            else:
+                return math.nan
         energy = np.pi * self.factors.work(tangent.product(rate.motion), rate.motion)
         return self._sides * float(energy + rate.forces @ touching.tail @ rate.forces)
