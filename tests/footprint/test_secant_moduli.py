@@ -92,5 +92,5 @@ def test_cards_without_the_table_need_no_press() -> None:
 
 
 def test_an_unknown_choice_is_an_error() -> None:
-    with pytest.raises(InputError, match=r"moduli.*'card'.*'secant'"):
+    with pytest.raises(InputError, match=r"moduli.*'payne' is not allowed.*card, secant"):
         study("nasa-22x5.5-8pr", {"mechanics.moduli": "payne"})
