@@ -1,7 +1,7 @@
 """Threads of linear algebra: one, because several mostly wait for each other.
 
-The matrices of a tyre are small. On two idle cores a second thread saves no time and takes 1.3 to 1.9 times the
-processor time; beside another busy process a press took 4.5 times as long with it. docs/evidence/performance.md
+The matrices of a tyre are small. On two idle cores a second thread saves little time or none and takes 1.4 to 2.2 times
+the processor time; beside another busy process a press took 4.5 times as long with it. docs/evidence/performance.md
 """
 
 from __future__ import annotations

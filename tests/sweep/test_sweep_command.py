@@ -156,6 +156,11 @@ def test_bad_input_is_one_line_before_anything_runs(
     assert not list(tmp_path.iterdir())
 
 
+def test_a_flag_beside_a_sweep_file_is_named_itself(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["sweep", "crown-angle", "--sample", "sobl"]) == 2
+    assert "tyrefem: --sample: 'sobl' is not allowed" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize(
     ("rows", "flags", "message"),
     [

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterator
+from collections.abc import Container, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -19,11 +19,8 @@ if TYPE_CHECKING:
 
 #: Keys of a sweep file that a flag of one word gives.
 FLAGS = {
-    key: f"--{flag}"
-    for key, flag in {
-        "uncertain": "uncertain", "sample": "sample", "count": "count", "seed": "seed", "cases": "cases",
-        "time_to": "time-to", "answers": "answer",
-    }.items()
+    "uncertain": "--uncertain", "sample": "--sample", "count": "--count", "seed": "--seed", "cases": "--cases",
+    "time_to": "--time-to", "answers": "--answer",
 }  # fmt: skip
 
 
@@ -231,16 +228,26 @@ def questions(
     if is_file or (path / "sweep.toml").is_file() or name in library.names("sweep"):
         file = library.find("sweep", name)
         stem = file.parent.resolve().name if file.name == "sweep.toml" else file.stem
-        return stem, design.loaded(name, changes, **given, **({} if case is None else {"case": case}))
+        with _naming_flags(given):
+            return stem, design.loaded(name, changes, **given, **({} if case is None else {"case": case}))
     if path.suffix != ".toml" and os.sep not in name and name not in library.names("study") and not path.is_dir():
         known = [*library.names("study"), *library.names("sweep")]
         raise InputError(f"no study or sweep named '{name}'{nearest(name, known)}")
     study = load(name, changes, case)
-    try:
+    with _naming_flags(given):
         card = SweepCard.check({"study": name, **given})
-    except InputError as error:
-        raise error if error.field not in FLAGS else InputError(error.message, field=FLAGS[error.field]) from None
     return study.name, design.questions(study, card, Path())
+
+
+@contextmanager
+def _naming_flags(given: Container[str]) -> Iterator[None]:
+    """Name the flag, not the key of a sweep file, in an error of what a flag has given."""
+    try:
+        yield
+    except InputError as error:
+        if error.field in FLAGS and error.field in given:
+            raise InputError(error.message, field=FLAGS[error.field]) from None
+        raise
 
 
 class _InterruptedError(Exception):

@@ -318,11 +318,12 @@ class LargeMotion:
         if rate.unstable is not None:
             self._folding.add(tangent, rate.unstable)
             exact, everywhere = tangent, np.ones(tangent.energies(rate.unstable).shape, dtype=bool)
-            for tangent in (self._folding.convex(exact), exact.convex(everywhere)):
+            tangent = self._folding.convex(exact)
+            rate = self._rate(touching, closed, tangent, normal_components, accuracy, rotations, start)
+            if not rate.stable:
+                tangent = exact.convex(everywhere)
                 rate = self._rate(touching, closed, tangent, normal_components, accuracy, rotations, start)
-                if rate.stable:
-                    break
-            else:
+            if not rate.stable:
                 return math.nan
         energy = np.pi * self.factors.work(tangent.product(rate.motion), rate.motion)
         return self._sides * float(energy + rate.forces @ touching.tail @ rate.forces)
