@@ -82,8 +82,8 @@ def test_the_command_writes_its_files(owner: Path, tmp_path: Path, capsys: pytes
     assert "Run 1: speed" in words
     record = json.loads((out / "plan.json").read_text(encoding="utf-8"))
     assert record["after"] is None
-    few = record["steps"][-1]["expected_probability"] < 0.9
-    assert ("A name needs 90 %; the true set is expected to have" in words) == few
+    few = record["steps"][-1]["expected_probability"] < 0.95
+    assert ("A name needs 95 %; the true set is expected to have" in words) == few
     assert sum(entry["probability"] for entry in record["sets"]) == pytest.approx(1.0)
     table = pd.read_csv(out / "plan.csv")
     assert table["step"].tolist() == [step["step"] for step in record["steps"]]

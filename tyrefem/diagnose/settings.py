@@ -188,8 +188,12 @@ class DiagnosisSettings:
     right_model: float = 0.5
 
     # -- verdict and amended study
-    #: A set is named if its members act with at least this probability.
-    named_probability: float = 0.9
+    #: A set is named if its members act with at least this probability. At 90 %, where it was, 2 of the 7 names of
+    #: blind and calibration cases below 95 % were wrong, and none of the 219 others.
+    named_probability: float = 0.95
+    #: Effects that act with at least this probability are held against their rivals before anything is named; a cause
+    #: outside the catalogue is stated with it.
+    challenged_probability: float = 0.9
     #: Joint probability of the reported (credible) sets.
     credible_mass: float = 0.99
     #: A set is named only if no further effect is missing with at least this probability.

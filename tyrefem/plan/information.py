@@ -9,9 +9,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.diagnose.settings import DEFAULT
+
 Array = NDArray[np.float64]
 #: A set counts as named with at least this probability.
-NAMED = 0.9
+NAMED = DEFAULT.named_probability
 #: Directions of the data with less information than this are left out, nats.
 NEGLIGIBLE = 1e-4
 
@@ -40,7 +42,7 @@ class Information:
     ----------
     gain, sd : mutual information of set and data, nats, and the standard deviation of its estimate.
     right : expected probability of the true set after the data. named : share of cases in which the true set then has
-        at least 90 %. probabilities : (K,) before the data. after : (K, K, n), ln p(set | data) by set, true set, draw.
+        at least 95 %. probabilities : (K,) before the data. after : (K, K, n), ln p(set | data) by set, true set, draw.
     """
 
     gain: float

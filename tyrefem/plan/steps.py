@@ -28,7 +28,7 @@ class PlanStep(Brief):
     number : from 1 on. drive : of the run, None for a further sensor only. place : of the further sensor, if any.
     run : number of the run, from 1 on. cost, total_cost : of this step, and of all steps so far.
     gain : expected information that this step adds, nats. total_gain, sd : of all steps so far, and its standard error.
-    right : expected probability of the true set after all steps so far. named : share of cases in which it has 90 %.
+    right : expected probability of the true set after all steps so far. named : share of cases in which it has 95 %.
     between : the most probable set, and the most probable one of those that lack a member of it.
     pair_probability : expected probability of the true one of the two, if one is true.
     """

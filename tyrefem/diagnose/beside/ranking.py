@@ -52,7 +52,7 @@ def robustness(
     ranked: dict[str, list[RankedBeside]] = {}
     for name, sizes in _by_cost(problem, fits, explained=explained).items():
         in_full = explained or name == ENERGY
-        before = () if in_full else _so_far(problem, alone, ranked).open(settings.named_probability)
+        before = () if in_full else _so_far(problem, alone, ranked).open(settings.challenged_probability)
         tried = []
         for discrepancy in sizes:
             known = ranked.get(name, [])

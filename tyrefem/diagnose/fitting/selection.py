@@ -51,7 +51,7 @@ def rivals_of_names(scored: Sequence[ScoredSet], settings: DiagnosisSettings) ->
     for member in dict.fromkeys(member for row in scored for member in row.members):
         acts = np.array([member in row.members for row in scored])
         estimated = [row for row in scored if row.fit is None and member not in row.members]
-        if shares[acts].sum() < settings.named_probability or not estimated:
+        if shares[acts].sum() < settings.challenged_probability or not estimated:
             continue
         best = max(estimated, key=lambda row: row.score)
         without = max((row.score for row in fitted if member not in row.members), default=-np.inf)

@@ -44,9 +44,9 @@ def beside_discrepancies(
 ) -> Revision:
     """The verdict with what else may be wrong, and the effects that are part of the cause.
 
-    - *identified* stays if every member acts with at least 90 % probability, averaged over the discrepancy models by
+    - *identified* stays if every member acts with at least 95 % probability, averaged over the discrepancy models by
       their probabilities. *confounded* stays unless the data exclude that effects alone are wrong (`NOT_EXCLUDED`).
-    - *partly identified*: more is wrong than effects, and some act with at least 90 % probability beside every
+    - *partly identified*: more is wrong than effects, and some act with at least 95 % probability beside every
       discrepancy model, with amounts that agree; beside the most probable model noise explains the misfit, and the
       held-out runs are predicted no worse with each of them than without it, and with all of them. Heat of unknown
       origin does not explain the data by itself.

@@ -133,7 +133,7 @@ def probability(ranking: Sequence[RankedSet]) -> float:
 
 
 def certain_members(judgement: Judgement, settings: DiagnosisSettings) -> Members:
-    """The members of the most probable set that act with at least 90 % probability, alone or with others."""
+    """The members of the most probable set that act with at least 95 % probability, alone or with others."""
     least = settings.named_probability
     return tuple(member for member in judgement.best.members if judgement.named.get(member.key, 0.0) >= least)
 
@@ -212,7 +212,7 @@ def _against_outside(
     """
     leading, *others = ranking
     entry = next((each for each in others if not each.outside), None)
-    if entry is None or not entry.members or leading.probability >= settings.named_probability:
+    if entry is None or not entry.members or leading.probability >= settings.challenged_probability:
         return None
     fit = entry.fit or fit_of(entry.members)
     if fit is None or rejection(entry.key, fit, settings):
@@ -233,7 +233,7 @@ def judge(
       rejected by the held-out runs; or these are predicted clearly better without any effect, or by heat of unknown
       origin.
     - *no gap*: the empty set is most probable.
-    - *identified*: the best set acts with at least 90 % probability, and alone with at least 50 %; no best value of an
+    - *identified*: the best set acts with at least 95 % probability, and alone with at least 50 %; no best value of an
       amplitude lies beyond a bound; no other set predicts the held-out runs clearly better; its fit has converged.
     - *confounded*: all other cases.
     """
