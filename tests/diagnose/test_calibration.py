@@ -134,6 +134,8 @@ def test_wrong_probabilities_and_ranks_are_noticed() -> None:
     assert Reliability.of([0.7] * 500, right).p_value > 0.01
     overconfident = Reliability.of([0.9] * 500, right)
     assert overconfident.error == pytest.approx(0.9 - right.mean(), abs=1e-12)
+    (row,) = overconfident.to_dict()["bins"]
+    assert (row["stated"], row["of"]) == (pytest.approx(0.9), 500)
     assert overconfident.p_value < 0.001
     # A prior that is three times too narrow pulls every amplitude towards zero.
     wide, narrow = single(1.0, 3.0), single(1.0, 1.0)

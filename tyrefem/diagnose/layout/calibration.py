@@ -64,7 +64,7 @@ class Reliability(Brief):
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data."""
-        bins = [{"stated": each.stated, **each.true.to_dict()} for each in self.bins]
+        bins = [{**each.true.to_dict(), "stated": each.stated} for each in self.bins]
         return {"bins": bins, "expected_calibration_error": self.error, "p_value": self.p_value}
 
 
