@@ -199,7 +199,8 @@ class StudyQuestions(studies.StudyData):
         ----------
         vary : dotted name -> tuple (from, to) or (from, to, levels), list of values, or entry of a sweep file.
         link : name -> dotted names that vary together under this name: ``{"gauges": ["section.thickness_scale.*"]}``.
-        sample : grid, latin-hypercube, sobol, saltelli or list, with ``count``, ``seed`` or ``cases``. case : of a campaign.
+        sample : grid, latin-hypercube, sobol, saltelli or list, with ``count``, ``seed`` or ``cases``.
+        case : of a campaign.
         change : values changed in every variant. uncertain : also vary all uncertain numbers, standard deviations.
         limits : answer -> its limits. time_to : temperature whose time is an answer. answers : in tables and pictures.
         pareto : answer -> "min" or "max". tornado, optimise, envelope : further questions, as in a sweep file.
