@@ -38,11 +38,11 @@ python tools/make_effects_page.py         # writes this page and its pictures fr
 name = "hot-road"
 warmer_by = "10 delta_degC"
 from = "diagnosis of run-1.csv"          # optional: where the value comes from
-sd = { warmer_by = "2 delta_degC" }      # optional: its standard deviation, for reports only
+sd = { warmer_by = "2 delta_degC" }      # optional: its standard deviation, within which a diagnosis fits it
 ```
 
-Every quantity is (base + sum of addends) x product of factors; films take resistances in series last. Refused are
-values beyond the bounds, an effect twice, and effects without meaning in a study.
+Every quantity is (base + sum of addends) x product of factors; films take resistances in series last. Values beyond
+the bounds, an effect twice, and effects without meaning in a study are refused.
 
 Each parameter has an *sd*, its standard deviation before any data: the effect's typical size. Meanings and bounds: see
 the [table](evidence/tables/effect-parameters.csv). A *shape* does nothing while the amplitude is 0. An "estimate" is a
@@ -65,14 +65,14 @@ warmer_by = "25 delta_degC"
 - A run has the name that its table gives, or else the name of the file without `.csv`. A name that the study's tables
   do not have is an error.
 - `tyrefem run` follows no measured run: it leaves the effect out, and the report says so. With the run's name it acts:
-  `tyrefem run STUDY --set run=run-2`. So it is with sweeps, campaigns and real-time models.
-- A diagnosis tries `hot-road`, `sun`, `wet-road` and `ambient-drift` also in each fitted run alone, as
+  `tyrefem run STUDY --set run=run-2`. The same holds for sweeps, campaigns and real-time models.
+- A diagnosis tries `hot-road`, `sun`, `wind`, `wet-road` and `ambient-drift` also in each fitted run alone, as
   `hot-road in run-2`. An effect of your own takes part with `of_the_day: ClassVar[bool] = True`.
 
 ## An effect of your own
 
-A Python file in a folder that `TYREFEM_PLUGINS` names, or its older name `TYREFEM_EFFECTS`. `tyrefem new effect lamp`
-writes this file, `tyrefem check` tries it: [extending](extending.md).
+A Python file in a folder that `TYREFEM_PLUGINS` names (older name: `TYREFEM_EFFECTS`). `tyrefem new effect lamp`
+writes this effect, `tyrefem check` tries it: [extending](extending.md).
 
 ```python
 from typing import Annotated, ClassVar
@@ -108,8 +108,8 @@ of points. A port that jumps within a phase states when: `jumps: ClassVar[tuple[
 
 ## An effect with a state of its own
 
-Wear, water on the tread, a warm brake disc: `states` has their unit and scale, `state_rates` their rates per second;
-ports read them with `tyre.state(self, name, t)`. Copy `tyrefem/effects/brake_disc.py` or
+Wear, water on the tread, a warm brake disc: `states` gives unit and scale, `state_rates` the rates per second;
+ports read a state with `tyre.state(self, name, t)`. Copy `tyrefem/effects/brake_disc.py` or
 `tests/effects/drying_tread.py`.
 
 - A state is a number, or an array with one value per place, as `initial_states` returns it (default 0).
@@ -117,7 +117,7 @@ ports read them with `tyre.state(self, name, t)`. Copy `tyrefem/effects/brake_di
   matters as much as 1 K.
 - `temperatures` gives `surface("road")`, `region("tread")`, `at(points)` and `reservoir("contained-air")` in degC.
 - `result.states` holds every state over time; `summary.json` its start, end, least and largest value.
-- A diagnosis simulates such an effect in full; reduced and real-time models refuse it.
+- A diagnosis simulates every point with such an effect; reduced and real-time models refuse it.
 """
 
 

@@ -224,14 +224,14 @@ def test_the_conformal_set_in_words() -> None:
     known = ConformalCalibration("alike", (), (), 0.95, {"an effect leads": threshold}, {"an effect leads": check})
     assert known.words(judgement.ranking) == (
         f"It is one of these two sets: {first.key}; {second.key} "
-        "(95 % wanted; such sets held the true one in 288 of 300 fresh quick cases)."
+        "(95 % wanted; such sets held the true one in 288 of 300 fresh cases)."
     )
     assert third.probability < second.probability
     pair = next(entry for entry in judgement.ranking if len(entry.members) == 2)
     alone = next(entry for entry in judgement.ranking if entry.members == pair.members[:1])
     both = (replace(alone, score=0.0, probability=0.6), replace(pair, score=-1.0, probability=0.4))
     of_both = replace(known, thresholds={"an effect leads": 0.9})
-    assert of_both.words(both).endswith(f"fresh quick cases). All of them have {alone.key}.")
+    assert of_both.words(both).endswith(f"fresh cases). All of them have {alone.key}.")
 
 
 def test_a_diagnosis_with_a_calibration_states_its_conformal_set(case: Any, tmp_path: Any) -> None:
@@ -249,7 +249,7 @@ def test_a_diagnosis_with_a_calibration_states_its_conformal_set(case: Any, tmp_
     write_json(record, tmp_path / "calibration.json")
     options = {"known": case.diagnosis.gap.responses, "rerun": False, "looks": 1, "largest": 1}
     diagnosis = case.study.diagnose(calibration=tmp_path, **options)
-    sentence = "It is this set: hot-road (95 % wanted; such sets held the true one in 480 of 500 fresh quick cases)."
+    sentence = "It is this set: hot-road (95 % wanted; such sets held the true one in 480 of 500 fresh cases)."
     assert sentence in verdict_words(diagnosis)
     conformal = diagnosis.to_dict()["conformal"]
     assert (conformal["sets"], conformal["threshold"]) == (["hot-road"], 0.99)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+from pathlib import Path
 
 import pytest
 
@@ -65,6 +66,13 @@ def test_it_lies_between_cold_and_hot_and_ends_as_the_steady_tread() -> None:
     assert rubbing(result) == pytest.approx(rubbing(fixed), rel=1e-2)
     assert result.highest[-1] == pytest.approx(fixed.highest[-1], abs=0.5)
     assert steady == pytest.approx(_tread(fixed), abs=0.5)
+
+
+def test_a_loaded_result_has_it(tmp_path: Path) -> None:
+    result = warm()
+    result.save(tmp_path)
+    loaded = tf.load(tmp_path)
+    assert loaded.feedback == result.feedback
 
 
 def _tread(result: Result) -> float:

@@ -1,7 +1,7 @@
 """The public classes: a study and its results, with their methods.
 
-Their base classes hold data; each method is one line that calls the package that does the work. Options of a method are
-named parameters, so that completion shows them; None as a default leaves the choice to the function that is called.
+Their base classes hold data; each method calls the package that does the work. Options of a method are named
+parameters, so that completion shows them; None as a default leaves the choice to the function that is called.
 Classes of answers are loaded with the first answer.
 """
 

@@ -11,7 +11,7 @@ from tyrefem.sweep import design
 
 
 class Design(design.DesignData):
-    """The answers to a design study, with `save`, `run` and `to_vtk` of variants."""
+    """The answers to a design study, with `save`; `run` and `to_vtk` of variants."""
 
     def _repr_html_(self) -> str | None:
         from tyrefem.reports.notebook import design_page
@@ -20,6 +20,8 @@ class Design(design.DesignData):
 
     def save(self, folder: str | Path, *, pictures: bool = True) -> Path:
         """Write every table (CSV and Parquet), ``summary.json``, and with pictures the PNG files and ``sweep.html``.
+
+        Returns the folder.
 
         Raises
         ------
@@ -46,11 +48,11 @@ class Design(design.DesignData):
     ) -> dict[str, Path]:
         """Run chosen variants in full, and write the VTK files of each as ``variants/NAME``: name -> its .pvd.
 
-        ``variants``: names in the table; None: those on the Pareto front.
+        ``variants``: names in the table; None: those on the Pareto front. ``revolved``: also as a whole ring.
 
         Raises
         ------
-        InputError : no sample, or no variant of that name; the folder cannot be written.
+        InputError : no sample, or no variant of that name; none on the front; the folder cannot be written.
         """
         from tyrefem.reports.sweep_variants import write_variants
 

@@ -83,14 +83,14 @@ class DiagnosisRecord(Record):
 
     @functools.cached_property
     def candidates(self) -> pd.DataFrame:
-        """A row per candidate: name, variant, probability, evidence, misfit."""
+        """A row per candidate, the most probable first: name, variant, probability, log_evidence, misfit and more."""
         import pandas as pd
 
         return pd.DataFrame(self.summary["candidates"])
 
     @functools.cached_property
     def changes(self) -> pd.DataFrame:
-        """A row per number of the amended study: key, original, value, sd, unit, source."""
+        """A row per changed number of the amended study: key, original, value, sd, unit, source and more."""
         import pandas as pd
 
         return pd.DataFrame(self.summary["changes"])

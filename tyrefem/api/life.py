@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class Life(lives.LifeData):
-    """How long a study's tyre lasts, with `places`, `shifts` and `save`."""
+    """How long a study's tyre lasts, with `places`, `shifts`, `summary` and `save`."""
 
     @property
     def places(self) -> tuple[FailurePlace, ...]:
@@ -25,7 +25,10 @@ class Life(lives.LifeData):
 
     @cached_property
     def shifts(self) -> tuple[LifeShift, ...]:
-        """The shortest life with 10 % more speed, 10 % more load, 10 % less pressure, 10 K more ambient: four runs."""
+        """The shortest life with 10 % more speed, 10 % more load, 10 % less pressure, 10 K more ambient: a run each.
+
+        If the tyre rolls with friction and slips, also with 10 % more slip.
+        """
         from tyrefem.fatigue.sensitivity import shifts
 
         return shifts(self)

@@ -24,9 +24,9 @@ COMPARISON = ("comparison.csv", "residuals.csv", "curves.csv", "comparison.json"
 def load(folder: str | Path) -> Result | Comparison | DiagnosisRecord | Record:
     """The result of a folder: a `Result`, a `Comparison`, a `DiagnosisRecord`, or of other commands a `Record`.
 
-    A `Result` from a folder is the one of the run: readings, temperatures, heat budget, pictures, report, VTK, study.
+    A `Result` from a folder is that of the run: readings, temperatures, heat budget, pictures, report, VTK, study.
     Cards of the study are those of the run, though their files have changed since. No code of the files is run.
-    A `Comparison` is the one of the command; a `DiagnosisRecord` has verdict, sets, readings and the amended study.
+    A `Comparison` is that of the command; a `DiagnosisRecord` has verdict, sets, readings and the amended study.
 
     Parameters
     ----------

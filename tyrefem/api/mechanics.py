@@ -24,7 +24,8 @@ class LoadedTyre(presses.Pressed):
     def save(self, folder: str | Path, at: Iterable[str] = (), *, pictures: bool = True, vtk: bool = True) -> Path:
         """Write the files of `tyrefem press`: ``press.json``, tables, pictures, ``tyre.vtu``; return the folder.
 
-        ``at``: places of the strain cycle, "r, z" or a region; by default the belt's edge and the greatest loss.
+        ``at``: places of the strain cycle, "287 mm, 80 mm" (r, z) or a region, which means its place of greatest loss;
+        by default the belt's edge and the place of greatest loss.
 
         Raises
         ------
@@ -68,15 +69,15 @@ class RollingWheel(rolls.RolledStudy):
 
         Raises
         ------
-        InputError : the card of region ``tread`` has no ``[wear]``.
+        InputError : no region ``tread``, or its card has no ``[wear]``.
         """
         from tyrefem.wear.ring_wear import ring_wear
 
         return ring_wear(self)
 
     def save(self, folder: str | Path, *, pictures: bool = True, vtk: bool = True) -> Path:
-        """Write ``roll.json``, ``contact.csv``, ``rings.csv``, ``contact.vtu``, ``tyre.vtu``, pictures; return the
-        folder.
+        """Write ``roll.json``, ``contact.csv``, ``rings.csv``, ``footprint-pressure.csv``, pictures, ``contact.vtu``,
+        ``tyre.vtu``; return the folder.
 
         Raises
         ------

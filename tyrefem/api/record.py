@@ -1,4 +1,4 @@
-"""A folder that a command other than `run` of one study has written: summary, tables, study."""
+"""A folder that a command other than `run` and `compare` has written: summary, tables, study."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class Record(Brief):
 
     @functools.cached_property
     def summary(self) -> dict[str, Any]:
-        """The command's answer: contents of ``verdict.json``, ``comparison.json``, or ``summary.json``.
+        """The command's answer: contents of the first of `ANSWERS` in the folder, else of ``summary.json``.
 
         Raises
         ------

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class Result(result.ResultData):
-    """Result of a run, with methods to write and plot it. `tyrefem.load` gives it back from its folder."""
+    """Result of a run, with methods to write and plot it. `tyrefem.load` reads it from its folder."""
 
     def _repr_html_(self) -> str | None:
         from tyrefem.reports.notebook import result_page
@@ -98,19 +98,20 @@ class Result(result.ResultData):
 
     def to_vtk(self, folder: str | Path, *, revolved: bool = False) -> Path:
         """Write ``<name>.pvd``, a .vtu per saved time (regions, T, heat source, strain energy), and ``<name>.py``,
-        which shows them in ParaView; return the .pvd."""
+        which shows them in ParaView; return the .pvd. ``revolved``: also ``<name>-revolved.pvd``, the whole ring."""
         from tyrefem.reports.vtk import write_series
 
         return write_series(self, Path(folder), revolved=revolved)
 
     def report(self, path: str | Path) -> Path:
-        """Write one self-contained HTML report."""
+        """Write one self-contained HTML report; return its path."""
         from tyrefem.reports.run import write_report
 
         return write_report(self, Path(path))
 
     def save(self, folder: str | Path, *, parquet: bool = False) -> Path:
-        """Write readings, extremes and heat budget as CSV, ``summary.json``, and ``result.npz`` for `tyrefem.load`.
+        """Write readings, extremes and heat budget as CSV, ``study.toml``, ``result.npz`` for `tyrefem.load`, and
+        ``summary.json``, whose path it returns.
 
         ``parquet``: the tables also as Parquet, with their units in the columns' metadata.
         """

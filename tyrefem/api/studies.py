@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class Study(StudyQuestions, StudyMechanics):
-    """A study, with methods to run, compare, diagnose and sweep it. `study` makes it; `replace` changes it.
+    """A study, with methods to run, compare, diagnose and sweep it. `study` loads it; `replace` gives a changed one.
 
     >>> coarse = study("nasa-22x5.5-8pr", {"mesh.size": "12 mm", "drive.duration": "60 s"})
     >>> f"{coarse.run().peaks['tyre'].temperature:.0f} degC"
@@ -36,7 +36,9 @@ class Study(StudyQuestions, StudyMechanics):
         return shown(lambda: study_page(self))
 
     def run(self, progress: Callable[[float], None] | None = None, *, partial: bool = False) -> Result:
-        """Simulate the drive. ``progress`` is called with the time (s) after every step.
+        """Simulate the drive; of a campaign the drive of the study itself.
+
+        ``progress`` is called with the time (s) after every step.
 
         ``partial``: return the finished part after Ctrl-C (``result.history.interrupted``); else raise it.
         """
@@ -47,7 +49,12 @@ class Study(StudyQuestions, StudyMechanics):
         return with_verbs(Result, run(self, progress, partial=partial))
 
     def campaign(self) -> Campaign:
-        """The cases of the study's table, each of them a study."""
+        """The cases of the study's table, each of them a study.
+
+        Raises
+        ------
+        InputError : the study has no table of cases, or the table or a case has an error.
+        """
         return Campaign.of(self)
 
 

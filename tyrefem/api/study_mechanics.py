@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class StudyMechanics(studies.StudyData):
-    """A study's methods for the mechanics of its tyre. Numbers are in SI; the default is the drive's first phase."""
+    """A study's methods for the mechanics of its tyre. Numbers are in SI; None: as in the drive's first phase."""
 
     def press(
         self,
@@ -36,8 +36,8 @@ class StudyMechanics(studies.StudyData):
         Parameters
         ----------
         pressure : Pa above the ambient. load, deflection : N or m, at most one of them. drum_diameter : m.
-        camber : rad. tolerance : allowed change with the number of harmonics. motion : ``"large"`` or ``"linear"``.
-        speed : m/s, for ``[mechanics] rolling = true``.
+        camber : rad. tolerance : allowed change with the number of harmonics, relative.
+        motion : ``"large"`` or ``"linear"``; None: the study's. speed : m/s, for ``[mechanics] rolling = true``.
 
         Errors: see `tyrefem.mechanics.footprint.press.press`.
 
@@ -79,9 +79,9 @@ class StudyMechanics(studies.StudyData):
         ----------
         slip_angle : rad, positive to the left. turn_slip : curvature of the path, 1/m. camber : rad.
         slip, torque, axle_force : at most one of them: longitudinal slip, N m, or N forward; none: rolls freely.
-        friction : coefficient, or function of sliding speed (m/s) and pressure (Pa). speed : m/s.
-        pressure, load, deflection, drum_diameter, motion : as in `press`.
-        tolerance : allowed change of the horizontal force with the number of harmonics.
+        friction : coefficient, or function of sliding speed (m/s) and pressure (Pa); None: that of the tread's card.
+        speed : m/s. pressure, load, deflection, drum_diameter : as in `press`. motion : ``"linear"`` or ``"large"``.
+        tolerance : allowed change of the horizontal force with the number of harmonics, relative.
 
         Errors: see `tyrefem.mechanics.rolling.roll.roll`.
 
@@ -106,7 +106,8 @@ class StudyMechanics(studies.StudyData):
 
         Raises
         ------
-        InputError : a law of sliding other than ``rolling``; no ``[wear]`` on the tread's card.
+        InputError : a law of sliding other than ``rolling``; no ``[wear]`` on the tread's card; a drive that never
+            rolls.
         """
         from tyrefem.wear.drive_wear import drive_wear
 
@@ -160,8 +161,10 @@ class StudyMechanics(studies.StudyData):
         harmonics: int = 80,
         progress: Callable[[float, float], None] | None = None,
     ) -> ForceTable:
-        """Forces at every one of ``loads`` (N), over ``slips``, ``slip_angles`` and ``cambers``, rad; None: usual ones.
+        """Forces at every one of ``loads``, N, over ``slips``, ``slip_angles``, rad, and ``cambers``, rad; None: usual
+        ones.
 
+        ``harmonics``: of all points. ``progress``: called with the number of curves done, and of all.
         ``fit`` of the answer has the coefficients of a Magic Formula; `ForceTable.save` writes them as a ``.tir`` file.
         Other options as in `roll`; see `tyrefem.mechanics.rolling.force_table.tyre_forces`.
         """
@@ -211,7 +214,8 @@ class StudyMechanics(studies.StudyData):
         """Distance until small flaws become cracks, at every point, by strain cycle and temperatures of a run.
 
         ``temperature``: degC everywhere, without a run; ``plateau``: each phase at the temperatures of its end;
-        ``result``: a finished run: see `tyrefem.fatigue.life.life`. Not compared with any measured life.
+        ``result``: a finished run; ``progress``: as of `run`: see `tyrefem.fatigue.life.life`. Not compared with any
+        measured life.
 
         >>> from tyrefem import study
         >>> coarse = {"mesh.size": "14 mm", "mechanics.strain": "fem", "mechanics.motion": "linear"}

@@ -58,7 +58,8 @@ class StudyQuestions(studies.StudyData):
         result : the study's result, if it is known.
         inputs : also runs with each uncertain number one standard deviation higher. k : coverage factor, 2 for 95 %.
         ignore : columns to leave out. rename : column -> sensor.
-        executor, reduced, store, settings : how the simulations run. progress, begin : what is called of them.
+        reduced : "auto": a reduced model, confirmed by full runs, for many changed inputs; "never": full runs only.
+        executor, store, settings : how the simulations run. progress, begin : functions that are called meanwhile.
 
         All of them, and the errors: `tyrefem.compare.compare`.
         """
@@ -199,13 +200,15 @@ class StudyQuestions(studies.StudyData):
         ----------
         vary : dotted name -> tuple (from, to) or (from, to, levels), list of values, or entry of a sweep file.
         link : name -> dotted names that vary together under this name: ``{"gauges": ["section.thickness_scale.*"]}``.
-        sample : grid, latin-hypercube, sobol, saltelli or list, with ``count``, ``seed`` or ``cases``.
-        case : of a campaign.
-        change : values changed in every variant. uncertain : also vary all uncertain numbers, standard deviations.
+        sample : grid (default), latin-hypercube, sobol, saltelli or list, with ``count``, ``seed`` or ``cases``.
+        case : of a campaign. title : of the page.
+        change : values changed in every variant.
+        uncertain : also vary all uncertain numbers, within so many standard deviations.
         limits : answer -> its limits. time_to : temperature whose time is an answer. answers : in tables and pictures.
         pareto : answer -> "min" or "max". tornado, optimise, envelope : further questions, as in a sweep file.
         scheduler : where the variants run. folder : keeps finished variants; ``restart`` deletes them first.
-        reduced, tolerance, settings : reduced models, see `tyrefem.variants.execution.Execution`.
+        reduced : "auto", "never" or "always" for a certified reduced model. tolerance : K, of its certificate; None:
+            0.01. settings : see `tyrefem.variants.execution.SweepSettings`.
         progress : called with (stage, finished, total).
         further : tables of other questions, by their names.
 
@@ -247,7 +250,8 @@ class StudyQuestions(studies.StudyData):
         ----------
         vary : dotted name -> range, as in `sweep`; None: the study's ``[explore]``, else a box about its drive, rubbers
             and films. limits : answer -> below, above. axes : the two numbers of the safe envelope.
-        tolerance : K, of every temperature in the certificate. scheduler : where the runs are done.
+        tolerance : K, of every temperature in the certificate; None: the study's, else 0.3, with strain by finite
+            elements 1. scheduler : where the runs are done.
         progress : called with (stage, finished, total).
 
         >>> from tyrefem import study

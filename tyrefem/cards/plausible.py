@@ -55,7 +55,7 @@ SHEAR_MODULUS = Plausible(
     5e4,
     2e8,
     "Pa",
-    "gum 0.2 MPa to hard apex 30 MPa, Gent, Engineering with Rubber, from memory; four times more either way",
+    "gum 0.2 MPa to hard apex 30 MPa, Gent, Engineering with Rubber, from memory; four to seven times more either way",
 )
 YOUNGS_MODULUS = Plausible(
     1.5e5, 2.5e11, "Pa", "three times a gum's shear modulus, steel wire 210 GPa; textbooks, from memory"

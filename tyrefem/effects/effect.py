@@ -155,7 +155,7 @@ class Effect(Card):
     #: Boundaries that the ports `flux` and `radiation` may use.
     surfaces: ClassVar[tuple[str, ...]] = SURFACES
 
-    #: Origin of the values, and their standard deviations, stated by the study; no computation uses them.
+    #: Origin of the values, and their standard deviations, stated by the study: a diagnosis fits values within them.
     provenance: Text | None = Field(default=None, alias="from")
     sd: dict[str, Any] = Field(default_factory=dict)
     #: Names of the measured runs in which the effect acts; None: in every run, and in a drive that is no measured run.

@@ -8,7 +8,6 @@ from tyrefem.effects.tyre import StudyOfTyre, Tyre
 def deflection_change(tyre: Tyre, t: float, pressure_factor: float) -> float:
     """D(F, factor p) / D(F, p) of the load-deflection law; 1 without load, or where the drive gives the deflection."""
     law, rating = tyre.study.card.mechanics.load_law, tyre.study.section.rating
-    assert rating is not None
     load, pressure = (tyre.schedule.mean(quantity, t) for quantity in (lambda c: c.load, lambda c: c.pressure))
     if load <= 0 or tyre.drive.phases[tyre.drive.locate(t)[0]].load is None:
         return 1.0

@@ -232,7 +232,7 @@ class LoadLaw(Protocol):
     def law(self) -> str:
         """Name in study files."""
 
-    def deflection(self, load: float, pressure: float, tyre: Rating) -> float:
+    def deflection(self, load: float, pressure: float, tyre: Rating | None) -> float:
         """Deflection, m, at a load (N) and gauge pressure (Pa)."""
 
 

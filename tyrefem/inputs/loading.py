@@ -76,19 +76,27 @@ class TrR64(Card):
     def _scale(self, pressure: float, tyre: RatedTyre) -> float:
         return (pressure + 0.08 * tyre.pressure) * tyre.width * math.sqrt(tyre.width * tyre.diameter)
 
-    def load(self, deflection: float, pressure: float, tyre: RatedTyre) -> float:
+    def load(self, deflection: float, pressure: float, tyre: RatedTyre | None) -> float:
         """Vertical load, N."""
-        u, c = deflection / tyre.width, self.shape_factor
+        tyre, c = _rated(tyre), self.shape_factor
+        u = deflection / tyre.width
         shape = 0.96 * u + 0.216 * u * u / c if u <= 10 * c / 3 else 2.4 * (u - c)
         return shape * self._scale(pressure, tyre)
 
-    def deflection(self, load: float, pressure: float, tyre: RatedTyre) -> float:
+    def deflection(self, load: float, pressure: float, tyre: RatedTyre | None) -> float:
         """Deflection, m: the closed-form inverse of the two branches."""
-        f, c = load / self._scale(pressure, tyre), self.shape_factor
+        tyre, c = _rated(tyre), self.shape_factor
+        f = load / self._scale(pressure, tyre)
         if f <= 2.4 * (10 * c / 3 - c):
             a = 0.216 / c
             return tyre.width * (-0.96 + math.sqrt(0.96**2 + 4 * a * f)) / (2 * a)
         return tyre.width * (f / 2.4 + c)
+
+
+def _rated(tyre: RatedTyre | None) -> RatedTyre:
+    if tyre is None:
+        raise InputError("the load-deflection law 'tr-r-64' needs the section's [rating]", field="section.rating")
+    return tyre
 
 
 class VerticalStiffness(Card):
@@ -98,11 +106,11 @@ class VerticalStiffness(Card):
     stiffness: Annotated[float, Unit("N/m", gt=0)]
     source: Text
 
-    def load(self, deflection: float, pressure: float, tyre: RatedTyre) -> float:
+    def load(self, deflection: float, pressure: float, tyre: RatedTyre | None) -> float:
         """Vertical load, N."""
         return self.stiffness * deflection
 
-    def deflection(self, load: float, pressure: float, tyre: RatedTyre) -> float:
+    def deflection(self, load: float, pressure: float, tyre: RatedTyre | None) -> float:
         """Deflection, m."""
         return load / self.stiffness
 
@@ -192,7 +200,7 @@ class LoadCase:
 
 def load_case(
     law: TrR64 | VerticalStiffness | None,
-    rating: RatedTyre,
+    rating: RatedTyre | None,
     *,
     outer_radius: float,
     pressure: float,
@@ -207,7 +215,7 @@ def load_case(
 
     Raises
     ------
-    InputError : the deflection exceeds half the outer radius.
+    InputError : the law needs a rating; the deflection exceeds half the outer radius.
     """
     by_deflection = deflection is not None
     if deflection is None:

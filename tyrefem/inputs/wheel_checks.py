@@ -46,8 +46,8 @@ def check_wheel_states(study: DrivenStudy) -> None:
 
     Raises
     ------
-    InputError : torque or camber without the law ``rolling``; that law without finite elements in linear motion or
-        without friction of a card; a slip angle or camber on a half section; a locked wheel. It names phase and key.
+    InputError : torque or camber without the law ``rolling``; that law without finite elements or without friction
+        of a card; a slip angle or camber on a half section; a locked wheel. It names phase and key.
     """
     try:
         if not study.card.boundaries.sliding.rolls:

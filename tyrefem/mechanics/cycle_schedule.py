@@ -13,7 +13,7 @@ from tyrefem.boundaries.contained_air import ATMOSPHERE
 from tyrefem.brief import Brief, PickledFields
 from tyrefem.errors import InputError
 from tyrefem.inputs.drive import Drive
-from tyrefem.inputs.loading import GivenFootprint, LoadCase, load_case
+from tyrefem.inputs.loading import GivenFootprint, LoadCase, TrR64, load_case
 from tyrefem.inputs.motion import WheelMotion, motion_in
 from tyrefem.inputs.study import StudyData
 from tyrefem.inputs.wheel_state import wheel_state
@@ -277,6 +277,7 @@ class KnotSolver:
         self.study = study
         if not strain_law(study).by_elements:
             _ = self._cycle
+        _check_rating(study)
 
     @functools.cached_property
     def _cycle(self) -> Callable[..., StrainCycle]:
@@ -314,6 +315,13 @@ class KnotSolver:
         return self.study.as_written(error.within(field=f"drive.phases.{name}", file=self.study.file))
 
 
+def _check_rating(study: StudyData) -> None:
+    law = study.card.mechanics.load_law
+    if study.section.rating is None and isinstance(law, TrR64) and not strain_law(study).presses:
+        message = f"the load-deflection law '{law.law}' needs the section's [rating]"
+        raise InputError(message, field="section.rating", file=study.file)
+
+
 def _check_footprint(study: StudyData) -> None:
     law, diameter = study.card.mechanics.footprint, study.section.outer_diameter
     if isinstance(law, GivenFootprint) and law.length >= diameter:
@@ -325,7 +333,6 @@ def _check_footprint(study: StudyData) -> None:
 
 def _load_case(study: StudyData, number: int, fraction: float, pressure_ratio: float = 1.0) -> LoadCase:
     phase, section = study.card.drive.phases[number], study.section
-    assert section.rating is not None
     pressure = phase.pressure.at(fraction)
     # In this form a ratio of 1 leaves the pressure unchanged to the last bit.
     pressure = pressure + (pressure + ATMOSPHERE) * (pressure_ratio - 1)

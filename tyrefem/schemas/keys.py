@@ -50,7 +50,7 @@ OF_CLASS = {
     "ThermalCard.bodies": "Bodies by name, each of one temperature.",
     "ThermalCard.films": "Films between bodies and surroundings.",
     "ThermalCard.runs": "Tests at constant speed and load.",
-    "Effect.sd": "Parameter -> standard deviation of its value, as a diagnosis wrote it; no computation uses it.",
+    "Effect.sd": "Parameter -> standard deviation of its value, as a diagnosis wrote it; the next one fits within it.",
     "GivenFootprint.length": "Length of the footprint.",
     "TrR64.shape_factor": "C_z: 0.02 for type VII aircraft tyres.",
     "VerticalStiffness.stiffness": "Load over deflection.",

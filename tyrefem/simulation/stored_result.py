@@ -123,7 +123,8 @@ def _feedback(data: Mapping[str, Any] | None) -> FeedbackOutcome | None:
     if data is None:
         return None
     start, end = (InflationState(**data[key]) for key in ("start", "end"))
-    return FeedbackOutcome(data["tolerance"], tuple(data["changes"]), start, end, data["softened"])
+    softened, friction = data["softened"], data.get("friction_temperature")
+    return FeedbackOutcome(data["tolerance"], tuple(data["changes"]), start, end, softened, friction)
 
 
 def _mesh(mesh: TyreMesh) -> tuple[dict[str, Any], Arrays]:

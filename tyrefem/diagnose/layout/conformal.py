@@ -99,7 +99,7 @@ class ConformalCalibration(Brief):
         names = "; ".join(entry.key for entry in sets[:MOST])
         more = f"; and {len(sets) - MOST} more" if len(sets) > MOST else ""
         first = "It is this set" if len(sets) == 1 else f"It is one of these {COUNTS.get(len(sets), len(sets))} sets"
-        held = f"{check['held']:.0f} of {check['of']:.0f} fresh quick cases"
+        held = f"{check['held']:.0f} of {check['of']:.0f} fresh cases"
         common = self.in_all(ranking) if len(sets) > 1 else ()
         all_have = f" All of them have {' and '.join(common)}." if common else ""
         wanted = f"{100 * self.coverage:g} % wanted; such sets held the true one in {held}"

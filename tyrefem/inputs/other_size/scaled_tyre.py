@@ -22,9 +22,9 @@ from tyrefem.inputs.study import StudyData
 from tyrefem.sizes import Drawn, completed_materials, draw_size, parse_size
 from tyrefem.sizes.text import section_text, table_lines
 
-#: Tables of a study that belong to the tyre that was measured.
 #: Numbers of a card that follow the tyre's place.
 OF_PLACE = ("angle_radius",)
+#: Tables of a study that belong to the tyre that was measured.
 MEASURED = ("measured", "cases", "run", "made_for", "published")
 
 

@@ -67,7 +67,7 @@ def draw_with(
         "shoulder_radius",
         radius / 8,
         "mm",
-        "one eighth of tread_radius: 4 to 12 for a tread's outer arcs over its shoulder's (EP 0 424 155)",
+        "an eighth of tread_radius by rule: 4 to 12 for a tread's outer arcs over its shoulder's (EP 0 424 155)",
         5e-3,
         20,
     )
