@@ -63,7 +63,7 @@ def test_bad_files(here: Path, refused: Callable[..., str], name: str) -> None:
 def test_missing_file_empty_folder_and_a_link_to_nowhere(here: Path, refused: Callable[..., str]) -> None:
     assert "nowhere.toml: no such file" in refused("check", "nowhere.toml")
     (here / "folder").mkdir()
-    assert "folder: this folder has no study.toml, sweep.toml or rig.toml" in refused("check", "folder")
+    assert "folder: this folder has no study.toml, sweep.toml, rig.toml or thermal.toml" in refused("check", "folder")
     (here / "link.toml").symlink_to("nothing")
     assert "link.toml: cannot be read" in refused("check", "link.toml")
 

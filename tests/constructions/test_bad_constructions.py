@@ -15,6 +15,7 @@ CORDS = "materials.belt-1.cords"
     [
         ({f"{CORDS}.angle": "95 deg"}, "passenger-belt", "cords.angle", "95 deg is out of range: 0 deg"),
         ({f"{CORDS}.angle": "-20 deg"}, "passenger-belt", "cords.angle", "opposite angle"),
+        ({f"{CORDS}.pairs": False}, "passenger-belt", "cords.pairs", "between 0 and 90 deg.*opposite angle"),
         ({f"{CORDS}.ends": "2000 1/m"}, "passenger-belt", "cords.ends", "do not fit side by side.*at most 1"),
         ({f"{CORDS}.angle_radius": None}, "passenger-belt", "cords.angle_radius", "lift law needs the radius"),
         ({f"{CORDS}.plies": 0}, "passenger-belt", "cords.plies", "greater than or equal to 1"),

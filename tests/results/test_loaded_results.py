@@ -278,3 +278,12 @@ def test_packed_numbers_come_back_to_half_a_step(shape: tuple[int, int]) -> None
     assert back.shape == shape
     assert np.abs(back - values).max(initial=0.0) <= STEP / 2
     assert (unpacked(packed_bytes(back)) == back).all()
+
+
+def test_every_command_s_answer_is_its_summary() -> None:
+    """A command writes its answer beside ``summary.json``; results keep theirs in tables."""
+    from tyrefem.api.record import ANSWERS
+
+    root = Path(__file__).parents[2] / "tyrefem"
+    text = "".join(file.read_text(encoding="utf-8") for file in root.rglob("*.py") if file.name != "record.py")
+    assert all(f'"{name}"' in text for name in ANSWERS)

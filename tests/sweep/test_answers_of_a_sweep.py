@@ -55,6 +55,12 @@ def swept(tyre: Study) -> Sweep:
     return sweep(plan)
 
 
+def test_changes_act_in_every_variant(tyre: Study) -> None:
+    warm = tyre.sweep({"drive.speed": ["10 mph", "20 mph"]}, change={"drive.ambient": "60 degC"}, reduced="never")
+    alone = tyre.replace({"drive.ambient": "60 degC", "drive.speed": "20 mph"}).run()
+    assert warm.table["hottest_degC"].iloc[1] == pytest.approx(alone.history.maximum.temperature, abs=1e-9)
+
+
 def test_every_variant_is_the_run_of_its_study(swept: Sweep, tyre: Study) -> None:
     row = swept.table.iloc[3]
     alone = tyre.replace({"drive.speed": "20 mph", "materials.tread.loss_tangent.value": "0.3"}).run()
@@ -362,6 +368,7 @@ def test_the_envelope_ends_where_the_limit_is_reached(tyre: Study) -> None:
     assert speeds == pytest.approx([50.0, 20.0, 12.5], rel=0.005)
     assert answer.table["at_limit"].all()
     assert answer.runs < 30
+    assert answer.table["settled"].all()
     # Load x speed is the same everywhere: 100 kN m/s = 36.7 t km/h.
     assert answer.rating["tkph"].tolist() == pytest.approx([100 / 9.80665 * 3.6], rel=0.005)
 
@@ -374,6 +381,17 @@ def test_the_envelope_says_where_no_speed_or_every_speed_is_safe(tyre: Study) ->
     assert not answer.table["at_limit"].any()
     assert answer.words[1] == "at 500 kPa: 7 km/h and more with 2 kN, no speed with 8 kN."
     assert np.isnan(answer.rating["tkph"].iloc[0])
+
+
+def test_a_search_that_does_not_end_says_so_and_gives_a_safe_speed(
+    tyre: Study, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("tyrefem.sweep.envelope.ROUNDS", 2)
+    card = EnvelopeCard(below=120.0, loads=("5 kN",), pressures=("500 kPa",), slowest="1 m/s")
+    answer = envelope(tyre, card, scheduler=Formula(heated), reduced="never")
+    assert answer.table["speed_m_s"].tolist() == pytest.approx([1.0])
+    assert not answer.table["settled"].any()
+    assert answer.words[1] == "at 500 kPa: 4 km/h or more (not settled) with 5 kN."
 
 
 def test_a_heavier_tyre_must_go_slower_and_what_it_says_is_true(tyre: Study) -> None:

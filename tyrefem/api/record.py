@@ -19,7 +19,10 @@ if TYPE_CHECKING:
     import pandas as pd
 
 #: Files of a command's main answer, in the order of search; then ``summary.json``.
-ANSWERS = ("verdict.json", "comparison.json", "plan.json", "press.json", "roll.json", "forces.json", "modes.json")
+ANSWERS = (
+    "verdict.json", "comparison.json", "plan.json", "critical-speed.json", "press.json", "roll.json", "forces.json",
+    "modes.json", "blind.json", "isolability.json", "strain.json", "thermal-card.json",
+)  # fmt: skip
 #: Files of a study in such a folder.
 STUDIES = ("amended.toml", "study.toml")
 

@@ -43,10 +43,10 @@ def check(
     if study is not None:
         raise InputError("goes with a Python file of plugins", field="--study")
     if path.is_dir():
-        names = ("rig.toml", "sweep.toml", "study.toml")
+        names = ("rig.toml", "sweep.toml", "thermal.toml", "study.toml")
         path = path / next((name for name in names if (path / name).is_file()), "study.toml")
         if not path.is_file():
-            raise InputError("this folder has no study.toml, sweep.toml or rig.toml", file=file)
+            raise InputError("this folder has no study.toml, sweep.toml, rig.toml or thermal.toml", file=file)
     if not os.path.lexists(path):
         from tyrefem import library
 

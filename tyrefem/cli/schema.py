@@ -17,7 +17,7 @@ def schema(
     out: Annotated[Path, typer.Option("--out", help="Folder of the schemas.")] = Path("schemas"),
     force: ForceOption = False,
 ) -> None:
-    """Write JSON schemas of studies, sections, materials, sweeps and rigs: editors then complete keys and check them.
+    """Write JSON schemas of studies, sections, materials, sweeps, rigs, thermal cards: editors complete and check keys.
 
     Your own effects and cards are in them. Taplo and VS Code read .taplo.toml, written in this folder.
     """

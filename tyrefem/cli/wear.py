@@ -32,7 +32,7 @@ OPTIONS = {
 }
 
 #: What is meant without options, SI.
-DEFAULTS = {"slip_angle": math.radians(0.5), "camber": 0.0, "friction": 1.0}
+DEFAULTS = {"slip_angle": math.radians(0.5), "camber": 0.0}
 
 
 def wear(
@@ -45,7 +45,7 @@ def wear(
     ] = None,
     slip: Annotated[str | None, typer.Option(help="Longitudinal slip, '1 %', positive drives; default: free.")] = None,
     camber: Annotated[str | None, typer.Option(help="Camber, '1 deg'.")] = None,
-    friction: Annotated[str | None, typer.Option(help="Coefficient of friction; default: 1.0.")] = None,
+    friction: Annotated[str | None, typer.Option(help="Coefficient of friction; default: that of the tread's card, else 1.")] = None,
     distance: Annotated[
         str | None, typer.Option(help="Write the section that is worn by this distance, '20000 km'.")
     ] = None,

@@ -142,14 +142,14 @@ class Cords(Card):
     ends : cords per metre across them, at ``angle_radius``, all plies of the layer together [1/m].
     plies : number of cord layers for these ends.
     angle : to the circumference [rad], 0 to 90 deg. angle_radius : where angle and ends are given [m].
-    pairs : half of the cords at +angle, half at -angle.
+    pairs : half of the cords at +angle, half at -angle; False at 0 and 90 deg only, where it means nothing.
     thickness_share : share of the layer's thickness that contains the cords.
     loss_tangent : of the cords; by default they lose no energy.
     softening : of the cords with temperature; by default their modulus is constant.
 
     Raises
     ------
-    InputError : an angle beyond 0 to 90 deg, touching cords, a lifted angle without its radius.
+    InputError : an angle beyond 0 to 90 deg, or of one sign; touching cords, a lifted angle without its radius.
 
     >>> belt = Cords.check({"modulus": "110 GPa", "diameter": "0.6 mm", "ends": "862 1/m", "angle": "22 deg",
     ...                     "angle_radius": "303 mm", "source": "estimate: example"})
@@ -179,6 +179,12 @@ class Cords(Card):
                 f"{math.degrees(self.angle):.4g} deg is out of range: 0 deg (circumferential) to 90 deg (radial);"
                 " 'pairs' lays the other half of the cords at the opposite angle",
                 field="angle",
+            )
+        if not self.pairs and 1e-9 < self.angle < math.pi / 2 - 1e-9:
+            raise InputError(
+                "false with an angle between 0 and 90 deg: such a layer twists when it is stretched, which is left out;"
+                " leave it out: half of the cords then lie at the opposite angle",
+                field="pairs",
             )
         if self.ends / self.plies * self.diameter > 1:
             raise InputError(

@@ -66,7 +66,6 @@ def by_order(harmonics: Array) -> Array:
 
     The sum over orders is within 0.1 % of that over harmonics for a power law of frequency with the exponent 0.3, and
     within 0.4 % for a single Maxwell element.
-    and within 0.4 % for a single Maxwell element.
 
     >>> by_order(np.array([0.0, 1.0, 5.0, 8.0])).round(3).tolist()
     [1.0, 0.0, 0.0, 0.0, 5.0, 0.0, 5.281, 2.719]

@@ -307,6 +307,7 @@ INNER: dict[str, Keys] = {
         "load": "text: Load.", "pressure": "text: Gauge pressure.", "load_N": "number: Load.",
         "pressure_Pa": "number: Gauge pressure.", "speed_m_s": "number?: Largest speed.",
         "speed_km_h": "number?: The same.", "at_limit": "truth: Is the limit met there?",
+        "settled": "truth: Did the search end there? False: a larger speed may be safe.",
         "tkph": "number?: Load times speed, tonne km/h.", "by": "text: reduced or full.",
         "error_K": "number?: Error of the reduced model.", "failure": "text: Why there is none; else empty.",
         "*": "any: The limited answer there.",

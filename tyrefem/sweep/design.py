@@ -234,7 +234,8 @@ def run_design_study(study: StudyData, vary: Mapping[str, Any] | None = None, **
     execution = Execution(**run)
     if options.get("case") is not None:
         study = study.case(options["case"])
-    return questions(study, card_of(study, vary, **with_further_tables(options))).answered(execution)
+    card = card_of(study, vary, **with_further_tables(options))
+    return questions(study.replace(card.change) if card.change else study, card).answered(execution)
 
 
 def loaded(name: str, changes: Mapping[str, Any] | None = None, **options: Any) -> Questions:

@@ -134,9 +134,9 @@ class SpeedSearch:
             return
         value = float(outcome.answers[answer])
         if math.isnan(self.at_low):
-            self.at_low = value
-            if value >= self.limit:
-                self.settled, self.value = True, value
+            self.at_low = self.value = value
+            self.settled = value >= self.limit
+            self._speed = math.nan if self.settled else self.low
         elif math.isnan(self.at_high):
             self.at_high = value
             if value < self.limit:
@@ -153,7 +153,7 @@ class SpeedSearch:
         if not self.settled and not math.isnan(self.at_high):
             self.bracketed = True
             close = self.high - self.low < self.fine or abs(self.value - self.limit) < FINE * abs(self.limit)
-            self.settled = close and not math.isnan(self._speed)
+            self.settled = close
 
 
 #: Rounds of the search at most.
@@ -172,8 +172,9 @@ class Envelope:
     ----------
     study : the study. card : the question. runs : number of runs. certificate : of the reduced model, if it was used.
     table : a row per load and pressure: both as written and in SI, ``speed_m_s`` (NaN: above the limit at all speeds),
-        ``at_limit`` (False: below the limit even at the highest speed), the answer there, ``tkph`` = load x speed in
-        t km/h, ``by``, ``error_K``, ``failure``.
+        ``at_limit`` (False: below the limit even at the highest speed), ``settled`` (False: the search ended after
+        `ROUNDS`, and a larger speed may be safe), the answer there, ``tkph`` = load x speed in t km/h, ``by``,
+        ``error_K``, ``failure``.
     """
 
     study: StudyData
@@ -230,7 +231,7 @@ def _speed_words(row: Mapping[Any, Any]) -> str:
         return f"(failed) with {row['load']}"
     if math.isnan(row["speed_m_s"]):
         return f"no speed with {row['load']}"
-    beyond = "" if row["at_limit"] else " and more"
+    beyond = " and more" if not row["at_limit"] else "" if row["settled"] else " or more (not settled)"
     return f"{row['speed_m_s'] * 3.6:.0f} km/h{beyond} with {row['load']}"
 
 
@@ -276,6 +277,7 @@ def envelope(
             "speed_m_s": search.speed,
             "speed_km_h": search.speed * 3.6,
             "at_limit": search.bracketed,
+            "settled": search.settled,
             card.answer: search.value,
             "tkph": newton / 9806.65 * search.speed * 3.6,
             "by": answered_by,
