@@ -1,6 +1,6 @@
 """The plain tyre rolled step by step in time, in three dimensions, beside its steady state by harmonics.
 
-    python benchmarks/rolling_by_steps.py        # writes docs/evidence/tables/rolling-by-steps.csv, three minutes
+    python benchmarks/rolling_by_steps.py        # writes docs/evidence/tables/rolling-by-steps.csv, four minutes
 
 Both have the same section. Deflection, travel per radian and slip angle are given; forces, moments and friction power
 are compared. Deviations of F_x and F_y are over the horizontal force: F_x of a freely rolling tyre is almost nothing.

@@ -1,6 +1,6 @@
 """Processor time of slip curves at 5,000 nodes and 40 harmonics on one core, beside the cost in three dimensions.
 
-    python benchmarks/rolling_speed.py [--large]        # one minute; with --large ten more
+    python benchmarks/rolling_speed.py [--large]        # two minutes; with --large ten more
 
 Goals: 2 s a point after the footprint, 30 s a curve of 20 points; large motion within five times that. Prints a table
 and, as its last line, one JSON object.

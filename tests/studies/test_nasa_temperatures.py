@@ -2,8 +2,8 @@
 
 Its tread surface is deliberately not compared. It averages the *series* conductance through 4 mm of rubber to the road
 and so loses like 18 W/m2/K there; a film at the surface, averaged over the revolution (f H_c = 1300 W/m2/K), holds the
-tread near the road. Here the crown's outside comes out 12 to 28 K lower, the shoulder's outside 12 to 35 K, and the
-crown's middle up to 10 K lower. The contained air is 2 to 9 K higher. The network is a flat slice: the
+tread near the road. Here the crown's outside comes out 12 to 27 K lower, the shoulder's outside 12 to 34 K, and the
+crown's middle up to 10 K lower. The contained air is 3 to 9 K higher. The network is a flat slice: the
 inner surface is averaged by the areas AC of tables H1 and H2, without their radius, and the bead row counts with 2.7 cm
 (8PR) and 3.1 cm (12PR) at about the rim's temperature, of which the section drawn from the same tables has 1.1 cm. Both
 make the network's mean inner surface, and with it the gas, cooler.
@@ -103,7 +103,7 @@ def test_with_the_report_s_areas_our_inner_surface_gives_its_contained_air(case)
     """Our inner surface averaged as the report does is within 3 K of the re-implementation's gas.
 
     The gas follows that mean within 0.5 K: its time constant is 9 s. The report's areas without radius and with its
-    bead row make up the whole distance of 2 to 9 K.
+    bead row make up the whole distance of 3 to 9 K.
     """
     result, (ply_rating, *_) = run(*case, air="report"), case
     section = result.study.section

@@ -40,7 +40,7 @@ TOGETHER = 64
 
 @dataclass(frozen=True, eq=False)
 class LifeData(Brief):
-    """LifeData at the Gauss points of a study's mechanical mesh. Made by `life`. NaN: a region without ``[fatigue]``.
+    """Life at the Gauss points of a study's mechanical mesh. Made by `life`. NaN: a region without ``[fatigue]``.
 
     Parameters
     ----------
@@ -105,7 +105,7 @@ class LifeData(Brief):
 
     @property
     def shortest(self) -> float:
-        """LifeData of the element that fails first, km."""
+        """Life of the element that fails first, km."""
         return float(self.element_km[self.first])
 
     @functools.cached_property
