@@ -45,7 +45,9 @@ def wear(
     ] = None,
     slip: Annotated[str | None, typer.Option(help="Longitudinal slip, '1 %', positive drives; default: free.")] = None,
     camber: Annotated[str | None, typer.Option(help="Camber, '1 deg'.")] = None,
-    friction: Annotated[str | None, typer.Option(help="Coefficient of friction; default: that of the tread's card, else 1.")] = None,
+    friction: Annotated[
+        str | None, typer.Option(help="Coefficient of friction; default: that of the tread's card, else 1.")
+    ] = None,
     distance: Annotated[
         str | None, typer.Option(help="Write the section that is worn by this distance, '20000 km'.")
     ] = None,

@@ -93,7 +93,8 @@ class Mode(Brief):
 class Vibration(Brief):
     """Small free motions about a state: K_n x = w^2 M x on the free degrees of freedom.
 
-    Frequencies come from Lanczos iteration with (K_n + s^2 M)^-1, s = 2 pi `SHIFT`, one factorisation per harmonic and family.
+    Frequencies come from Lanczos iteration with (K_n + s^2 M)^-1, s = 2 pi `SHIFT`, one factorisation per harmonic
+    and family.
     A half section has two families. Symmetric motions have u_z = 0 on the mid plane, the others u_r = u_t = 0.
 
     Parameters
