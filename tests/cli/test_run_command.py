@@ -144,8 +144,13 @@ def test_a_folder_that_cannot_be_written(refused: Callable[..., str]) -> None:
         ([NASA, "--set", "drive.load=1e7 lbf"], "drive"),
         (
             ["nasa-campaign", "--set", "drive.load=3000 lbf"],
-            "every case of cases.csv sets 'drive.load': change it in that table",
+            "'drive.load' is set again by 'drive.load' of every case: change it in cases.csv",
         ),
+        (
+            ["nasa-campaign", "--set", "drive.deflection=10 mm"],
+            "'drive.deflection' is set again by 'drive.load' of every",
+        ),
+        (["nasa-campaign", "--set", "section.crown_radius=3.6 in"], "is set again by 'section' of"),
     ],
 )
 def test_bad_input_is_refused_in_one_line(refused: Callable[..., str], arguments: list[str], words: str) -> None:

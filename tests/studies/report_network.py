@@ -47,62 +47,78 @@ def in_series(area, *layers):
     return area / sum(1 / layer for layer in layers)
 
 
+class Slice:
+    """The report's slice 1 cm thick, with the strain energy of a tyre's first load case as its heat.
+
+    ``revolved`` weights every area and volume with its radius, as a tyre has it; the report's slice is flat.
+    """
+
+    def __init__(self, ply_rating, tyre, revolved=False):
+        study, schedule = tyre.study, tyre.schedule
+        section, cycle = study.section, schedule.cycles[0][0]
+        s, depth = nodes(ply_rating, section)
+        places = section.place(s, depth)
+        self.materials, self.regions = study.materials, section.region_at(s, depth)
+        self.energy = np.zeros((11, 3))
+        for zone in schedule.zones:
+            inside = (self.regions == zone.region) & (s >= zone.start) & (s < zone.end)
+            self.energy[inside] = cycle.energy_density(zone.name, places[inside].T)
+        radius = places[..., 0] if revolved else np.ones((11, 3))
+        LH, LV, DH, DV, AA, DA = (
+            table(ply_rating, name) for name in ("LH_cm2", "LV_cm2", "DH_cm", "DV_cm", "AA_cm2", "DA_cm")
+        )
+        AC, DC = rows(ply_rating, "AC_cm2"), rows(ply_rating, "DC_cm")
+        self.volume = LH * LV / CM * radius  # m3 of a slice 1 cm thick
+        self.through = CONDUCTIVITY * LH[:, :2] * radius[:, :2] / DH[:, :2]
+        self.along = CONDUCTIVITY * (LV * radius)[:-1] / DV[:-1]
+        self.to_gas = in_series(AC, CONDUCTIVITY / DC, GAS) * radius[:, 0]
+        self.inner = AC * radius[:, 0] / np.sum(AC * radius[:, 0])
+        self.outer_radius, self.area, self.depth = radius[:, 2], AA[:, 0], DA[:, 0]
+        self.on_rim = np.isnan(AA[:, 0])
+        half = LV[:, 2] / CM / 2
+        self.to_rim = np.where(self.on_rim, in_series(LH[:, 2], CONDUCTIVITY / half, RIM), 0.0) * radius[:, 2]
+
+    def heat(self, T, revolutions):
+        """(11, 3) W/m3 at so many revolutions per second."""
+        lost = np.zeros((11, 3))
+        for region in np.unique(self.regions):
+            of_region = self.regions == region
+            lost[of_region] = self.energy[of_region] * self.materials[region].loss_tangent(T[of_region])
+        return math.pi * revolutions * lost
+
+    def rate(self, state, revolutions, speed, ambient, *, road=0.0, rim=0.0, wind=0.0):
+        """d(state)/dt of the temperatures (33) and the contained air: road and rim so much warmer than the ambient, K;
+        wind beyond the tyre's speed, m/s. At rest no part is on the road."""
+        T, gas = state[:-1].reshape(11, 3), state[-1]
+        power = self.heat(T, revolutions) * self.volume
+        flow = self.through * np.diff(T, axis=1)
+        power[:, :2] += flow
+        power[:, 1:] -= flow
+        flow = self.along * np.diff(T, axis=0)
+        power[:-1] += flow
+        power[1:] -= flow
+        power[:, 0] += self.to_gas * (gas - T[:, 0])
+        power[:, 2] += self.to_rim * (ambient + rim - T[:, 2])
+        film = (1.3e-4 + 4e-7 * 100 * (speed + wind)) * CAL
+        for row in np.flatnonzero(~self.on_rim):
+            to_air, to_road = (in_series(self.area[row], CONDUCTIVITY / self.depth[row], each) for each in (film, ROAD))
+            share = 0.1 if row in ON_ROAD and speed > 0 else 0.0
+            outward = (1 - share) * to_air * (ambient - T[row, 2]) + share * to_road * (ambient + road - T[row, 2])
+            power[row, 2] += self.outer_radius[row] * outward
+        gas_rate = GAS_RATE * (self.inner @ T[:, 0] - gas)
+        return np.append(power / (HEAT_CAPACITY * self.volume), gas_rate)
+
+
 def network(ply_rating, result, revolved=False, duration=600.0):
     """Element temperatures (11, 3) and that of the contained air, degC, at the end of free rolling.
 
-    ``result`` is a run of the same study; its strain energy and loss tangent give the heat. ``revolved`` weights
-    every area and volume with its radius, as a tyre has it; the report's slice is flat.
+    ``result`` is a run of the same study; its strain energy and loss tangent give the heat.
     """
-    study, schedule = result.study, result.tyre.schedule
-    section, cycle = study.section, schedule.cycles[0][0]
-    s, depth = nodes(ply_rating, section)
-    places = section.place(s, depth)
-    regions = section.region_at(s, depth)
-    energy = np.zeros((11, 3))
-    for zone in schedule.zones:
-        inside = (regions == zone.region) & (s >= zone.start) & (s < zone.end)
-        energy[inside] = cycle.energy_density(zone.name, places[inside].T)
-    per_second = math.pi * schedule.revolutions_per_second(0.0)
-
-    def heat(T):
-        lost = np.zeros((11, 3))
-        for region in np.unique(regions):
-            of_region = regions == region
-            lost[of_region] = energy[of_region] * study.materials[region].loss_tangent(T[of_region])
-        return per_second * lost
-
-    radius = places[..., 0] if revolved else np.ones((11, 3))
-    LH, LV, DH, DV, AA, DA = (
-        table(ply_rating, name) for name in ("LH_cm2", "LV_cm2", "DH_cm", "DV_cm", "AA_cm2", "DA_cm")
-    )
-    AC, DC = rows(ply_rating, "AC_cm2"), rows(ply_rating, "DC_cm")
-    volume = LH * LV / CM * radius  # m3 of a slice 1 cm thick
-    through = CONDUCTIVITY * LH[:, :2] * radius[:, :2] / DH[:, :2]
-    along = CONDUCTIVITY * (LV * radius)[:-1] / DV[:-1]
-    air = (1.3e-4 + 4e-7 * 100 * SPEED) * CAL
-    to_gas = in_series(AC, CONDUCTIVITY / DC, GAS) * radius[:, 0]
-    outward = np.empty(11)
-    for row in range(11):
-        if np.isnan(AA[row, 0]):  # on the rim
-            outward[row] = in_series(LH[row, 2], CONDUCTIVITY / (LV[row, 2] / CM / 2), RIM)
-            continue
-        to_air, to_road = (in_series(AA[row, 0], CONDUCTIVITY / DA[row, 0], film) for film in (air, ROAD))
-        outward[row] = 0.9 * to_air + 0.1 * to_road if row in ON_ROAD else to_air
-    outward *= radius[:, 2]
-    inner = AC * radius[:, 0] / np.sum(AC * radius[:, 0])
+    model = Slice(ply_rating, result.tyre, revolved)
+    revolutions = result.tyre.schedule.revolutions_per_second(0.0)
 
     def rate(_time, state):
-        T, gas = state[:-1].reshape(11, 3), state[-1]
-        power = heat(T) * volume
-        flow = through * np.diff(T, axis=1)
-        power[:, :2] += flow
-        power[:, 1:] -= flow
-        flow = along * np.diff(T, axis=0)
-        power[:-1] += flow
-        power[1:] -= flow
-        power[:, 0] += to_gas * (gas - T[:, 0])
-        power[:, 2] += outward * (AMBIENT - T[:, 2])
-        return np.append(power / (HEAT_CAPACITY * volume), GAS_RATE * (inner @ T[:, 0] - gas))
+        return model.rate(state, revolutions, SPEED, AMBIENT)
 
     end = solve_ivp(rate, (0.0, duration), np.full(34, AMBIENT), method="BDF", rtol=1e-6).y[:, -1]
     return end[:-1].reshape(11, 3), float(end[-1])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Callable
 from dataclasses import replace
@@ -21,6 +22,7 @@ from tyrefem.reduced.surrogate import SurrogateCertificate
 from tyrefem.reports import sweep_answer_figures as answer_pictures  # noqa: F401  registers its pictures
 from tyrefem.reports.sweep_figures import figures
 from tyrefem.sweep.envelope import Envelope, checked_pairs, envelope
+from tyrefem.sweep.evaluation import Evaluator
 from tyrefem.sweep.optimum import Optimum, optimum
 from tyrefem.sweep.pareto import ParetoFront, front, undominated
 from tyrefem.sweep.responses import Responses, main_effects
@@ -359,6 +361,21 @@ def heated(numbers: list[float]) -> float:
     """A tyre whose temperature is 20 + load x speed."""
     load, _, speed = numbers
     return 20.0 + load * speed
+
+
+def test_a_reduced_answer_of_another_search_is_not_taken_for_a_full_run(tyre: Study, tmp_path: Path) -> None:
+    plan = plan_of(tyre, {"drive.speed": ("10 m/s", "20 m/s", 2)})
+    execution = Execution(folder=tmp_path, reduced="never", scheduler=Formula(lambda numbers: 20.0 + numbers[0]))
+    changes = [{"drive.speed": "12 m/s"}, {"drive.speed": "13 m/s"}]
+    with Evaluator(plan, execution) as evaluate:
+        assert evaluate._store is not None
+        names = [json.dumps(each, sort_keys=True) for each in changes]
+        kept = [Answered({"hottest_degC": 1.0}, "reduced"), Answered({"hottest_degC": 2.0}, "full")]
+        evaluate._store.add_by_name(dict(zip(names, kept, strict=True)))
+        first, second = evaluate(changes)
+    assert (first.by, first.answers["hottest_degC"]) != ("reduced", 1.0)
+    assert first.by == "full"
+    assert second.answers["hottest_degC"] == 2.0
 
 
 def test_the_envelope_ends_where_the_limit_is_reached(tyre: Study) -> None:

@@ -54,7 +54,7 @@ def run(
         campaign = loaded.campaign()
         _refuse_overlaid(campaign, values)
         with results_folder(place, "run", campaign_files(campaign), inputs=tables, force=force) as folder:
-            _campaign(campaign, folder, pictures, vtk, revolved)
+            _campaign(campaign, folder, pictures, vtk, revolved, parquet)
     else:
         with results_folder(place, "run", run_files(loaded), inputs=tables, force=force) as folder:
             _single(loaded, folder, pictures, vtk, revolved, parquet)
@@ -121,7 +121,7 @@ def _words(result: Result) -> str:
     return "\n".join(lines)
 
 
-def _campaign(campaign: CampaignData, folder: Path, pictures: bool, vtk: bool, revolved: bool) -> None:
+def _campaign(campaign: CampaignData, folder: Path, pictures: bool, vtk: bool, revolved: bool, parquet: bool) -> None:
     from tyrefem.reports.campaign import run_campaign, write_campaign_report
 
     study = campaign.study
@@ -136,7 +136,7 @@ def _campaign(campaign: CampaignData, folder: Path, pictures: bool, vtk: bool, r
 
     with keeping(f"finished cases are in {folder / 'campaign.csv'}"):
         with progress(study.name, len(campaign.cases)) as step:
-            table = run_campaign(campaign, folder, lambda done, _all: step(done), each)
+            table = run_campaign(campaign, folder, lambda done, _all: step(done), each, parquet=parquet)
         if pictures:
             write_campaign_report(campaign, table, folder / "report.html")
     failed = table[table["failure"] != ""]
@@ -154,12 +154,24 @@ def _campaign(campaign: CampaignData, folder: Path, pictures: bool, vtk: bool, r
 
 
 def _refuse_overlaid(campaign: CampaignData, values: dict[str, Any]) -> None:
-    """Refuse a change of a value that the table sets again in every case."""
+    """Refuse a change of a value that the table of cases sets again."""
     for key in values:
-        if all(key in case.changes for case in campaign.cases):
+        again = {case.name: other for case in campaign.cases for other in case.changes if _overlays(other, key)}
+        if again:
+            cases = "every case" if len(again) == len(campaign.cases) else f"case {', '.join(list(again)[:3])}"
+            more = f" and {len(again) - 3} more" if 3 < len(again) < len(campaign.cases) else ""
+            other = next(iter(again.values()))
             raise InputError(
-                f"every case of {campaign.study.card.cases} sets '{key}': change it in that table", field="--set"
+                f"'{key}' is set again by '{other}' of {cases}{more}: change it in {campaign.study.card.cases}",
+                field="--set",
             )
+
+
+def _overlays(column: str, key: str) -> bool:
+    """Whether a column of the table of cases sets a value again: the same, a part or the whole, load or deflection."""
+    if {column, key} == {"drive.load", "drive.deflection"}:
+        return True
+    return column == key or key.startswith(f"{column}.") or column.startswith(f"{key}.")
 
 
 #: Place among the commands.

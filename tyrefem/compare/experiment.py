@@ -100,7 +100,7 @@ def experiments(
 
 def driven(study: StudyLike, experiment: Experiment) -> StudyLike:
     """The study at the drive of an experiment, with the effects that act in its run."""
-    if acting_in(study, experiment):
+    if acting_in(study, experiment) or (isinstance(study, StudyData) and study.card.run is not None):
         return cast(StudyData, study).at_run(experiment.name, experiment.drive)
     return study.with_drive(dict(experiment.drive)) if experiment.drive else study
 

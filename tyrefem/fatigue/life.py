@@ -143,10 +143,12 @@ def life(
 
     Raises
     ------
-    InputError : a campaign; a strain law without strains at points; no card with ``[fatigue]``; a tyre that never
+    InputError : a temperature with a run or its plateau; a campaign; a strain law without strains at points; no card with ``[fatigue]``; a tyre that never
         rolls; errors of a run.
     """
     check(study)
+    if temperature is not None and (plateau or result is not None):
+        raise InputError("goes without a run and without plateau: it holds everywhere", field="temperature")
     if temperature is not None:
         duty = Duty.at_temperature(cycle_schedule(study), temperature)
     else:

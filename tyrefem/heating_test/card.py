@@ -172,6 +172,8 @@ class SensorCard(Card):
                 raise InputError("a camera needs 'face', outer or inner", field="face")
             if self.depth is not None or self.depth_sd:
                 raise InputError("a camera measures a face and has no depth", field="depth")
+            if self.lag or self.lag_sd:
+                raise InputError("a camera has no lag", field="lag" if self.lag else "lag_sd")
         elif self.depth is None:
             raise InputError("a thermocouple needs 'depth' below the outer face", field="depth")
         elif self.face is not None:

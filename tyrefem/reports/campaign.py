@@ -40,11 +40,13 @@ def run_campaign(
     folder: Path,
     progress: Callable[[int, int], None] | None = None,
     each: Callable[[Any, Path], None] | None = None,
+    *,
+    parquet: bool = False,
 ) -> pd.DataFrame:
     """Run a campaign into a folder: a folder per case, ``campaign.csv`` and ``summary.json``.
 
     The table is written again after every case, so that an interrupted campaign keeps its finished cases.
-    ``each`` may write more files of a case (pictures, VTK) into its folder.
+    ``each`` may write more files of a case (pictures, VTK) into its folder. ``parquet``: its tables as Parquet, too.
     """
     rows: list[dict[str, Any]] = []
     # Written at the start: an older campaign's table in this folder must not be taken for this one's.
@@ -53,7 +55,7 @@ def run_campaign(
         try:
             if not isinstance(outcome, str):
                 with interruption_delayed():
-                    write_tables(outcome, folder / "cases" / case.name)
+                    write_tables(outcome, folder / "cases" / case.name, parquet=parquet)
                 if each is not None:
                     each(outcome, folder / "cases" / case.name)
         finally:

@@ -153,7 +153,9 @@ class RollingTyre(Surroundings):
         ports = ("film_factor", "film_addend", "film_resistance", "sink_addend", "flux", "radiation")
         like = self.similar
         same = like is not None and self._as_in_like(("boundaries", "drive", "mechanics"), ports)
-        if like is not None and same and self.tread == like.tread:
+        # Films and friction follow the strain cycle: contact length, area, forces; friction is shared out by the mesh.
+        same = same and like is not None and self.tread == like.tread and self.schedule is like.schedule
+        if like is not None and same and (self.mesh is like.mesh or not like.sliding.conditions):
             return like.boundaries
         added = {side: [condition for _, condition in self.acting.conditions(side)] for side in self._films}
         return {side: films + added[side] for side, films in self._films.items()}
@@ -207,8 +209,10 @@ class RollingTyre(Surroundings):
             reservoirs[GAS] = Reservoir(self._gas_capacity, start)
         if isinstance(rim, LumpedRim):
             exchanges: list[tuple[float, Any]] = [(rim.cooling * share, self.ambient)]
-            if self._gas_capacity is not None and rim.air > 0:
-                exchanges.append((rim.air * share, GAS))
+            if rim.air > 0:
+                contained = self.study.card.boundaries.contained_air
+                gas = GAS if self._gas_capacity is not None else contained.fixed_temperature
+                exchanges.append((rim.air * share, gas))
             power = (lambda t: share * self.acting.rim_power(t)) if self.acting.at("rim_power") else 0.0
             reservoirs[RIM] = Reservoir(rim.heat_capacity * share, self.rim_temperature(0.0), tuple(exchanges), power)
         return reservoirs

@@ -255,7 +255,8 @@ class Evaluator(VariantEvaluation):
             self.variants.append(dict(changes))
             self._names.append(name)
             known = None if self._store is None else self._store.by_name.get(name)
-            if known is not None:
+            # Of another search in this folder, by a reduced model that this one does not have.
+            if known is not None and (name.endswith(" full") or self.reduced or getattr(known, "by", "full") == "full"):
                 self.outcomes.update({number: known})
         return self._number[name]
 

@@ -38,6 +38,7 @@ class Bundle:
     ----------
     name : of the study. data : the study; its references point into ``files``. files : name -> bytes.
     version : of the package that packed the study. plugins : the user's own effects and laws.
+    cards : digest of the cards as packed, those that are shipped among them: in a clone they may be edited.
     """
 
     name: str
@@ -45,13 +46,15 @@ class Bundle:
     files: Mapping[str, bytes]
     version: str = tyrefem.__version__
     plugins: Sent = field(default_factory=Sent)
+    cards: str = ""
 
     @property
     def digest(self) -> str:
-        """Digest of the study and its files; the package's version stands for the shipped cards."""
+        """Digest of the study, its cards and files."""
         heads = {name: hashlib.sha256(content).hexdigest() for name, content in sorted(self.files.items())}
         plugins = [self.plugins.digest] if self.plugins.digest else []
-        text = json.dumps([self.version, self.name, self.data, heads, *plugins], sort_keys=True, default=str)
+        parts = [self.version, self.name, self.data, heads, self.cards, *plugins]
+        text = json.dumps(parts, sort_keys=True, default=str)
         return hashlib.sha256(text.encode()).hexdigest()[:16]
 
     def check_versions(self) -> None:
@@ -97,6 +100,9 @@ def bundle(study: StudyData) -> Bundle:
         data.pop(key, None)
     files: dict[str, bytes] = {}
     near = study.folder
+    loaded = [library.load("section", data["section"], near)[0]]
+    loaded += [library.load("material", reference, near)[0] for reference in data["materials"].values()]
+    cards = hashlib.sha256(json.dumps(loaded, sort_keys=True, default=str).encode()).hexdigest()
     data["section"] = _packed("section", data["section"], near, files)
     data["materials"] = {
         region: _packed("material", reference, near, files) for region, reference in data["materials"].items()
@@ -104,7 +110,7 @@ def bundle(study: StudyData) -> Bundle:
     mesh = data.get("mesh", {})
     if isinstance(mesh.get("file"), str):
         mesh["file"] = _kept((near or Path()) / mesh["file"], files)
-    return Bundle(study.name, data, files, plugins=sent())
+    return Bundle(study.name, data, files, plugins=sent(), cards=cards)
 
 
 def _packed(kind: str, reference: Any, near: Path | None, files: dict[str, bytes]) -> Any:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from tyrefem.errors import InputError
 from tyrefem.materials.wear import Wear
 from tyrefem.mechanics.cycle_schedule import CycleSchedule, cycle_schedule
+from tyrefem.simulation.run import run
 from tyrefem.wear.ring_wear import RingWear, tread_table
 
 if TYPE_CHECKING:
@@ -49,6 +50,11 @@ class DriveWear(RingWear):
         )
 
 
+def _schedule(study: StudyData) -> CycleSchedule:
+    """Strain cycles of the drive; with feedback those at the temperatures of its run."""
+    return cycle_schedule(study) if study.card.mechanics.feedback is None else run(study).tyre.schedule
+
+
 def drive_wear(study: StudyData) -> DriveWear:
     """Wear of a study's tread over its drive, from the friction work of the rings in every phase.
 
@@ -60,7 +66,7 @@ def drive_wear(study: StudyData) -> DriveWear:
     if not study.card.boundaries.sliding.rolls:
         message = "the wear of a drive needs boundaries.sliding = 'rolling'"
         raise InputError(message, field="boundaries.sliding", file=study.file)
-    schedule = cycle_schedule(study)
+    schedule = _schedule(study)
     distances = _distances(schedule)
     total = sum(distances.values())
     if not total > 0:

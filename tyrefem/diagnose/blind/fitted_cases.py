@@ -31,6 +31,7 @@ from tyrefem.diagnose.workflow import rank
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
 from tyrefem.output import jsonable
+from tyrefem.variants.answer_store import study_digest
 
 Array = NDArray[np.float64]
 #: Sets are drawn from those of up to two effects, and no larger ones are searched.
@@ -114,7 +115,7 @@ def _row(layout: FittedLayout, number: int) -> dict[str, Any]:
 
 def fitted_tag(study: StudyData, seed: int) -> str:
     """Begin of the names of the files of fitted cases; they depend on the study, the seed and the version."""
-    return tag_for(["fitted", jsonable(dict(study.data)), seed, tyrefem.__version__])
+    return tag_for(["fitted", study_digest(study), seed, tyrefem.__version__])
 
 
 def fitted_cases(

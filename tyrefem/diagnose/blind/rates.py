@@ -45,7 +45,7 @@ from tyrefem.inputs.study_plugins import plugin_summary
 from tyrefem.output import jsonable
 from tyrefem.requirements import Requirements
 from tyrefem.simulation.surroundings import GAS
-from tyrefem.variants.answer_store import PROGRESS
+from tyrefem.variants.answer_store import PROGRESS, study_digest
 
 #: What a study must have for a blind test.
 NEEDS = Requirements("a blind test", fitted=True)
@@ -246,7 +246,7 @@ def run_blind(
 def tag_of(study: StudyData, count: int, seed: int, **options: Unpack[BlindOptions]) -> str:
     """Begin of the names of a test's files in ``folder``/cases: tests that differ share a folder, but no file."""
     data_model, reduced, mesh = _chosen(options)
-    decisive = [jsonable(dict(study.data)), count, seed, reduced, dict(mesh), tyrefem.__version__]
+    decisive = [study_digest(study), count, seed, reduced, dict(mesh), tyrefem.__version__]
     decisive += [] if data_model == ORDINARY else [data_model]
     return tag_for(decisive)
 

@@ -58,6 +58,7 @@ class Pressed(Brief):
     moduli : the secant moduli, if the study asks for them; ``study`` then has cards with these.
     turning : the tyre that turns, with ``[mechanics] rolling``; None: it stands while it is pressed.
     path_harmonics : highest harmonic of each load step of ``path``.
+    given_speed : m/s, in place of the drive's.
     """
 
     study: StudyData
@@ -70,6 +71,7 @@ class Pressed(Brief):
     moduli: SecantModuli | None = None
     path_harmonics: tuple[int, ...] = ()
     turning: TurningTyre | None = None
+    given_speed: float | None = None
 
     def _title(self) -> str:
         return f"tyre of {self.study.name}"
@@ -110,8 +112,8 @@ class Pressed(Brief):
 
     @property
     def speed(self) -> float:
-        """Speed at the start of the drive's first phase, m/s; at its end if it starts at rest."""
-        return speed_of(self.study)
+        """The given speed, or that at the start of the drive's first phase, m/s; at its end if it starts at rest."""
+        return speed_of(self.study) if self.given_speed is None else self.given_speed
 
     @functools.cached_property
     def cycle(self) -> StrainHarmonics:

@@ -15,6 +15,7 @@ from tyrefem.errors import InputError
 from tyrefem.mechanics.rolling.roll import HARMONICS, WheelOnRoad, driven, row, swept, wheel_on_road
 from tyrefem.mechanics.rolling.rolled import RolledTyre
 from tyrefem.mechanics.rolling.rolling_motion import RollingMotion
+from tyrefem.mechanics.solid.tyre_body import reference_density
 from tyrefem.threads import one_thread
 from tyrefem.tyre_forces.fitting import MagicFormulaFit, fit_magic_formula
 from tyrefem.tyre_forces.points import ForcePoints
@@ -93,11 +94,7 @@ class TyreForces(Brief):
         seat = np.concatenate([rings.boundary_nodes(name) for name in state.fixed])
         sides = 2.0 if pressed.study.section.half else 1.0
         width, rim_radius = sides * float(np.ptp(z)), float(r[seat].min())
-        mass = 0.0
-        for region, members in (rings.mesh.subdomains or {}).items():
-            density = pressed.study.materials[region].density.law()
-            at_start = density(pressed.study.card.drive.initial) if callable(density) else density
-            mass += 2 * np.pi * sides * float(at_start) * float(rings.weights[members].sum())
+        mass = 2 * np.pi * sides * float((reference_density(pressed.study, pressed.tyre.body) * rings.weights).sum())
         return TyreDimensions(
             width=width,
             rim_radius=rim_radius,

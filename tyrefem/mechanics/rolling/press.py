@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 from tyrefem.inputs.study import StudyData
@@ -17,19 +18,20 @@ def press(study: StudyData, *, speed: float | None = None, **options: Any) -> pr
 
     Parameters
     ----------
-    speed : m/s, in place of the drive's. options : as of `footprint.press.press`.
+    speed : m/s, in place of the drive's; without ``mechanics.rolling`` it counts for the loss alone.
+    options : as of `footprint.press.press`.
 
     Raises
     ------
     InputError : as `footprint.press.press`; a speed beyond the tread's critical speed.
     """
     if not study.card.mechanics.rolling:
-        return presses.press(study, **options)
+        return replace(presses.press(study, **options), given_speed=speed)
 
-    speed = presses.speed_of(study) if speed is None else speed
+    given, speed = speed, presses.speed_of(study) if speed is None else speed
     if not speed:
-        return presses.press(study, **options)
+        return replace(presses.press(study, **options), given_speed=given)
     order = presses.press_order(study, **options)
     turning = turn(order, speed)
     parts = (turning.tyre, turning.pressing, turning.footprint, order.tolerance, turning.path)
-    return presses.Pressed(order.study, order.mesh, *parts, order.moduli, turning.path_harmonics, turning)
+    return presses.Pressed(order.study, order.mesh, *parts, order.moduli, turning.path_harmonics, turning, given)

@@ -224,7 +224,7 @@ def _tyre_key(study: StudyData, case: LoadCase) -> Hashable:
         # Loss is that of the regions' temperatures.
         warmth = (study.card.drive.initial, tuple((study.parts.temperatures or {}).items()))
         key += (key_of(values_read(FEM_ROLLING, study.materials)), *warmth, _given(case))
-    if study.card.mechanics.motion == "large":
+    if study.card.mechanics.motion == "large" or study.card.mechanics.moduli == "secant":
         key += (_given(case),)
     return (study.card.mechanics.motion, *key)
 
