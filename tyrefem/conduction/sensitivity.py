@@ -116,8 +116,15 @@ def tangents(
         direct = _direct(base, times, values, reservoirs, perturbed)
         s = np.zeros((ops.size + reservoirs.shape[1], len(perturbed)))
         for number, perturbation in enumerate(perturbed):
-            if perturbation.initial is not None:
-                s[:, number] = (perturbation.initial - values[0, 0]) / perturbation.step
+            initial = values[0, 0] if perturbation.initial is None else perturbation.initial
+            own = [each.initial for each in perturbation.problem.reservoirs.values()]
+            known = [each.initial for each in base.reservoirs.values()]
+            starts = [
+                initial if new is None and old is None else reservoirs[0, k] if new is None else new
+                for k, (new, old) in enumerate(zip(own, known, strict=True))
+            ]
+            s[: ops.size, number] = (initial - values[0, 0]) / perturbation.step
+            s[ops.size :, number] = (np.array(starts, dtype=float) - reservoirs[0]) / perturbation.step
         return _integrate(base, times, values, reservoirs, direct, direct.rate, s)
 
 

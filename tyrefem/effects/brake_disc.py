@@ -49,7 +49,7 @@ class BrakeDisc(Effect):
 
     def state_rates(self, tyre: Tyre, t: float, state: Values, temperatures: TemperaturesOfTyre) -> Values:
         """K/s: braking less what goes to rim and air."""
-        braking = self.power if tyre.speed(t) > 0 else 0.0
+        braking = self.power if tyre.motion(t).rolling_speed > 0 else 0.0
         lost = (self.to_rim + self.TO_AIR) * state["disc"]
         return {"disc": (braking - lost) / (self.mass * self.SPECIFIC_HEAT)}
 

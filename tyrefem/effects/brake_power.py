@@ -33,7 +33,7 @@ class BrakePower(Effect):
 
     def rim_power(self, tyre: Tyre, t: float) -> float:
         """W into the rim."""
-        return self.power if tyre.speed(t) > 0 else 0.0
+        return self.power if tyre.motion(t).rolling_speed > 0 else 0.0
 
     @classmethod
     def refusal(cls, study: StudyOfTyre) -> str | None:

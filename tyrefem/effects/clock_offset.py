@@ -9,7 +9,7 @@ from tyrefem.effects.signature import Signature
 
 
 class ClockOffset(Effect):
-    """reading at t -> temperature at t + late, for every sensor; held beyond the ends of the drive."""
+    """reading at t -> temperature at t + late, for thermocouples, not contained air and rim; held beyond the ends."""
 
     name: ClassVar[str] = "clock-offset"
     family: ClassVar[str] = "measurement"

@@ -27,4 +27,4 @@ class GasMixing(Effect):
 
     def film_factor(self, tyre: Tyre, film: str, t: float) -> float:
         """1 + gain v / v_ref on the contained air's film."""
-        return 1 + self.gain * tyre.speed(t) / REFERENCE_SPEED if film == "contained_air" else 1.0
+        return 1 + self.gain * tyre.motion(t).rolling_speed / REFERENCE_SPEED if film == "contained_air" else 1.0

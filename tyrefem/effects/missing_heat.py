@@ -61,7 +61,7 @@ class MissingHeat(Effect):
     def heat_addend(self, tyre: Tyre, zone: str, x: Array, t: float, T: Array) -> Factor:
         """W/m3 at points x (2, n)."""
         outside = (self.begins is not None and t < self.begins) or (self.ends is not None and t > self.ends)
-        if outside or tyre.speed(t) == 0 or self.region not in (None, tyre.region(zone)):
+        if outside or tyre.motion(t).rolling_speed == 0 or self.region not in (None, tyre.region(zone)):
             return 0.0
         s, _ = tyre.places(x)
         return np.asarray(self.heat * np.exp(-(((s - self.station) / self.width) ** 2) / 2))

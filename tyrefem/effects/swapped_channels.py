@@ -50,7 +50,7 @@ class SwappedChannels(Effect):
                 return f"the study has no sensor '{name}'{nearest(name, study.sensors)}"
         if self.sensor == self.other:
             return f"'{self.sensor}' is swapped with itself; name two sensors"
-        taken = _swapped(study)
+        taken = _swapped(study, self.runs)
         twice = [name for name in (self.sensor, self.other) if taken.count(name) > 1]
         return f"'{twice[0]}' is swapped twice" if twice else self.refusal(study)
 
@@ -62,7 +62,8 @@ class SwappedChannels(Effect):
         return tuple({"sensor": sensor, "other": other} for sensor, other in itertools.combinations(free, 2))
 
 
-def _swapped(study: StudyOfTyre) -> list[str]:
-    """The sensors of all swaps in a study."""
-    swaps = [swap for swap in study.card.effects if isinstance(swap, SwappedChannels)]
+def _swapped(study: StudyOfTyre, runs: tuple[str, ...] | None = None) -> list[str]:
+    """The sensors of all swaps in a study that act in some of these runs; None: in any."""
+    every = [swap for swap in study.card.effects if isinstance(swap, SwappedChannels)]
+    swaps = [swap for swap in every if runs is None or swap.runs is None or set(runs) & set(swap.runs)]
     return [name for swap in swaps for name in (swap.sensor, swap.other)]

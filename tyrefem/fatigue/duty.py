@@ -66,10 +66,11 @@ class Duty:
             return cls(solved(result.tyre.schedule), times, lambda places: np.asarray(result.at(places)))
         starts = np.asarray(result.tyre.schedule.drive.starts)
         ends = np.append(starts[1:], result.tyre.schedule.drive.end)
-        last = np.searchsorted(times, ends - 1e-9)
-        phase = np.clip(np.searchsorted(starts, times[:-1], side="right") - 1, 0, len(starts) - 1)
-        at_ends = np.append(last[phase], last[-1])
-        return cls(solved(result.tyre.schedule), times, lambda places: np.asarray(result.at(places))[at_ends])
+        # Every phase has its own begin and end: the time between two phases stands twice, an interval of no length.
+        inside = [(times > start - 1e-9) & (times < end + 1e-9) for start, end in zip(starts, ends, strict=True)]
+        last = np.concatenate([np.full(int(own.sum()), np.flatnonzero(own)[-1]) for own in inside])
+        repeated = np.concatenate([times[own] for own in inside])
+        return cls(solved(result.tyre.schedule), repeated, lambda places: np.asarray(result.at(places))[last])
 
     @classmethod
     def at_temperature(cls, schedule: CycleSchedule, temperature: float) -> Duty:

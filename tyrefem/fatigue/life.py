@@ -143,8 +143,8 @@ def life(
 
     Raises
     ------
-    InputError : a temperature with a run or its plateau; a campaign; a strain law without strains at points; no card with ``[fatigue]``; a tyre that never
-        rolls; errors of a run.
+    InputError : a temperature with a run or its plateau; a campaign; a strain law without strains at points; no card
+        with ``[fatigue]``; a tyre that never rolls; errors of a run.
     """
     check(study)
     if temperature is not None and (plateau or result is not None):

@@ -79,7 +79,8 @@ def _property(identification: IdentificationData, layer: str, key: str, unit: st
     slope = identification.fit.values[f"{layer}.{key}_slope"]
     if slope == 0.0:
         return {**entry, "value": f"{estimate.value:.5g} {unit}"}
-    low = min(test.run.ambient or identification.card.surroundings.ambient for test in identification.tests)
+    given = [test.run.ambient for test in identification.tests]
+    low = min(identification.card.surroundings.ambient if each is None else each for each in given)
     high = max(max(float(block.computed.max()) for block in identification.fit.blocks), low + 20.0)
     rows = []
     for T in (low, high):

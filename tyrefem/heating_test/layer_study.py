@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -58,6 +59,7 @@ def _merged(a: Any, b: Any) -> Any:
         update={
             "name": f"{a.name}+{b.name}",
             "thickness": total,
+            "thickness_sd": math.hypot(a.thickness_sd, b.thickness_sd),
             "density": changed(a.density, mass / total),
             "conductivity": changed(a.conductivity, k),
             "specific_heat": changed(a.specific_heat, heat / mass),

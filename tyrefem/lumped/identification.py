@@ -20,6 +20,8 @@ Array = NDArray[np.float64]
 DETERMINED = 1e-6
 #: Share of a number in such a direction above which it is named.
 NAMED = 0.1
+#: Relative step of the heat in central differences.
+HEAT_STEP = 1e-4
 
 
 @dataclass(frozen=True)
@@ -107,8 +109,9 @@ class LumpedIdentification(Brief):
 def identify(card: ThermalCard) -> LumpedIdentification:
     """Least squares of plateaus and times over their standard deviations.
 
-    min over p of sum ((y - y(p)) / sd)^2; covariance (J^T J)^-1 with J = (dy/dp)/sd. All conductances and capacities
-    are proportional to the heat, so its relative standard deviation is added to theirs.
+    min over p of sum ((y - y(p)) / sd)^2; covariance (J^T J)^-1 + g g^T heat_sd^2 with J = (dy/dp)/sd and
+    g = -(J^T J)^-1 J^T h, the change of p with the heat, h = (dy/d ln heat)/sd. If no number is known, conductances and
+    capacities are proportional to the heat; beside a known one another may change much more.
 
     Raises
     ------
@@ -128,9 +131,12 @@ def identify(card: ThermalCard) -> LumpedIdentification:
         )
     start = np.array([item.start for item in unknowns])
 
-    def residuals(relative: Array) -> Array:
+    def of_card(card: ThermalCard, relative: Array) -> Array:
         network = _network(card, unknowns, start * relative)
         return np.array([(computed - measured) / sd for _, measured, computed, sd in _data(card, network)])
+
+    def residuals(relative: Array) -> Array:
+        return of_card(card, relative)
 
     _told_apart(card, unknowns, _jacobian(residuals, np.ones(len(start))))
     low = np.full(len(start), 1e-6)
@@ -140,13 +146,26 @@ def identify(card: ThermalCard) -> LumpedIdentification:
     # Relative to the fit, so that all numbers are alike.
     jacobian = _jacobian(residuals, fit.x) * fit.x
     _told_apart(card, unknowns, jacobian)
-    relative_sd = np.sqrt(np.diag(np.linalg.inv(jacobian.T @ jacobian)))
+    covariance = np.linalg.inv(jacobian.T @ jacobian)
+    hotter, colder = (of_card(_heated(card, 1 + step), fit.x) for step in (HEAT_STEP, -HEAT_STEP))
+    by_heat = -covariance @ jacobian.T @ (hotter - colder) / (2 * HEAT_STEP)
+    relative_sd = np.hypot(np.sqrt(np.diag(covariance)), by_heat * card.heat_sd)
     numbers = []
     for item, value, sd in zip(unknowns, values, relative_sd, strict=True):
-        heat = 0.0 if item.kind == "shares" else card.heat_sd
         area = card.films[item.at].area if item.kind in ("at_rest", "rise") else None
-        numbers.append(LumpedNumber(item.name, item.unit, float(value), float(value * np.hypot(sd, heat)), area))
+        numbers.append(LumpedNumber(item.name, item.unit, float(value), float(value * sd), area))
     return LumpedIdentification(card, _network(card, unknowns, values), tuple(numbers))
+
+
+def _heated(card: ThermalCard, factor: float) -> ThermalCard:
+    """The card with this multiple of the heat in every run."""
+    return card.model_copy(
+        update={
+            "runs": tuple(
+                run.model_copy(update={"rolling_resistance": factor * run.rolling_resistance}) for run in card.runs
+            )
+        }
+    )
 
 
 def _unknowns(card: ThermalCard) -> list[_Unknown]:

@@ -36,9 +36,11 @@ def integrate(batch: Batch) -> BatchSolution:
     drive, y = batch.balances[0].alike.drive, np.stack([each.start for each in batch.balances])
     windows: list[Window] = []
     knots = batch.balances[0].alike.schedule.knots
+    jumps = {time for each in batch.balances for effect in each.alike.study.effects for time in effect.jumps}
     for number, (start, end) in enumerate(pairwise([*drive.starts, drive.end])):
-        # Between load cases the heat is linear in time: a window must end at each of them.
-        kinks = [start + (end - start) * share for share in knots[number] if 0 < share < 1]
+        # Between load cases the heat is linear in time, and effects may jump: a window must end at each of them.
+        cases = {start + (end - start) * share for share in knots[number] if 0 < share < 1}
+        kinks = sorted({*cases, *(time for time in jumps if start < time < end)})
         for first, last in pairwise([start, *kinks, end]):
             phase = _PhaseIntegration(batch, number, first, last, y)
             windows += phase.run()

@@ -145,9 +145,10 @@ def whole_tyre(
     powers: dict[tuple[str, str], Array] = {}
 
     def add(kind: str, name: str, energy: Array, power: Array | None) -> None:
-        energies[kind, name] = factor * np.asarray(energy)
+        # Two conditions may have one name.
+        energies[kind, name] = energies.get((kind, name), 0.0) + factor * np.asarray(energy)
         if power is not None:
-            powers[kind, name] = factor * np.asarray(power)
+            powers[kind, name] = powers.get((kind, name), 0.0) + factor * np.asarray(power)
 
     for zone, energy in budget.generated.items():
         add("generated", zone_titles.get(zone, zone), energy, budget.generated_power[zone])

@@ -20,13 +20,19 @@ def simulate(
         times,
         tyre.drive.initial,
         study.tolerance,
-        breakpoints=tyre.drive.starts[1:],
+        breakpoints=breakpoints(tyre),
         progress=progress,
         partial=partial,
     )
     if tyre.states is not None:
         tyre.states.record(history.times, history.states)
     return ResultData(study, tyre, history, fields, clock.perf_counter() - began)
+
+
+def breakpoints(tyre: RollingTyre) -> list[float]:
+    """Times at which data of a drive jump, s: begins of phases, and jumps of effects."""
+    jumps = {time for effect in tyre.study.effects for time in effect.jumps if 0 < time < tyre.drive.end}
+    return sorted({*tyre.drive.starts[1:], *jumps})
 
 
 def output_times(tyre: RollingTyre) -> tuple[Array, Array]:

@@ -138,7 +138,7 @@ class Surroundings:
         """Fraction of a revolution that a tread point spends on the road while the wheel turns."""
         law = self.study.card.boundaries.road
         if law.fraction is not None:
-            return law.fraction
+            return law.fraction if self.schedule.mean(lambda case: case.deflection, t) > 0 else 0.0
         return self.schedule.mean(lambda case: case.road_fraction, t)
 
     def footprint_area(self, t: float) -> float | None:
