@@ -12,6 +12,7 @@ from tyrefem.api import Result
 from tyrefem.conduction.fixed_steps import fixed_step_solution
 from tyrefem.conduction.sensitivity import Perturbed, stage_times, tangents
 from tyrefem.diagnose.forward.fixed_step import breaks
+from tyrefem.errors import InputError
 from tyrefem.fatigue.duty import Duty
 from tyrefem.lumped.card import ThermalCard
 from tyrefem.lumped.identification import identify
@@ -107,10 +108,17 @@ def test_uncertain_heat_counts_more_beside_a_known_film() -> None:
         "title": "one body", "temperature_sd": "0.1 K", "time_sd": "1 %", "heat_sd": "3 %",
         "bodies": {"body": {"heat_share": 1.0, "heat_capacity": "5000 J/K"}},
         "films": [{"between": ["body", "air"]}, {"between": ["body", "road"], "conductance": "10 W/K"}],
-        "runs": [{"name": "a", "speed": "10 m/s", "load": "3 kN", "rolling_resistance": "11 N", "air": "20 degC", "road": "20 degC",
-                  "plateau": {"body": "30 degC"}}],
+        "runs": [{"name": "a", "speed": "10 m/s", "load": "3 kN", "rolling_resistance": "11 N", "air": "20 degC",
+                  "road": "20 degC", "plateau": {"body": "30 degC"}}],
     }  # fmt: skip
     (number,) = identify(ThermalCard.check(card)).numbers
     assert number.value == pytest.approx(1.0, rel=1e-3)
     # 3 % of 11 W/K, and 0.1 K of 10 K.
     assert number.sd == pytest.approx(np.hypot(0.33, 0.11), rel=0.05)
+
+
+def test_a_lumped_rim_s_temperature_is_its_start() -> None:
+    with pytest.raises(InputError, match="a lumped rim only starts from it") as error:
+        study(**{"boundaries.rim": RIM, "drive.rim_temperature": {"from": "25 degC", "to": "90 degC"}})
+    assert str(error.value.field).endswith("rim_temperature")
+    assert study(**{"boundaries.rim": RIM, "drive.rim_temperature": "60 degC"}).card.drive.initial == 25.0

@@ -16,7 +16,7 @@ from tyrefem.inputs.study_effects import check_effects
 from tyrefem.inputs.study_parts import StudyParts, error_as_written
 from tyrefem.inputs.uncertain_numbers import UncertainNumber, uncertain_numbers
 from tyrefem.inputs.warnings import study_warnings
-from tyrefem.inputs.wheel_checks import check_wheel_states
+from tyrefem.inputs.wheel_checks import check_rim_temperature, check_wheel_states
 from tyrefem.materials.card import MaterialCard
 
 if TYPE_CHECKING:
@@ -57,6 +57,7 @@ class StudyContents(Brief):
             check_effects(self)
             try:
                 check_wheel_states(self)
+                check_rim_temperature(self)
             except InputError as error:
                 raise self.as_written(error) from None
 

@@ -60,6 +60,26 @@ def check_wheel_states(study: DrivenStudy) -> None:
         raise error.within(file=study.file) from None
 
 
+def check_rim_temperature(study: DrivenStudy) -> None:
+    """Refuse a rim temperature that changes in the drive of a lumped rim, whose own balance follows its start.
+
+    Raises
+    ------
+    InputError : it names phase and key.
+    """
+    if study.card.boundaries.rim.law != "lumped":
+        return
+    given = [(phase.name, phase.rim_temperature) for phase in study.card.drive.phases]
+    known = [(name, ramp) for name, ramp in given if ramp is not None]
+    for name, ramp in known:
+        if {ramp.start, ramp.end} != {known[0][1].start}:
+            raise InputError(
+                "changes in the drive, but a lumped rim only starts from it and then follows its heat balance",
+                field=f"drive.phases.{name}.rim_temperature",
+                file=study.file,
+            )
+
+
 def _refuse_torque_and_camber(study: DrivenStudy) -> None:
     for phase in study.card.drive.phases:
         for key in ONLY_ROLLING:

@@ -304,8 +304,11 @@ class _Training:
         phase, start = self.study.card.drive.phases[0], {}
         for name in NAMES:
             low, high = self.box.ranges[name]
-            ramp = getattr(phase, name) or (phase.ambient if name == "road_temperature" else None)
-            start[name] = min(max((low + high) / 2 if ramp is None else ramp.start, low), high)
+            ramp, value = getattr(phase, name), (low + high) / 2
+            if ramp is None and name == "road_temperature":
+                road = self.study.card.boundaries.road.temperature
+                value = phase.ambient.start if road is None else road
+            start[name] = min(max(value if ramp is None else ramp.start, low), high)
         return start
 
     def about(self) -> dict[str, Any]:

@@ -87,8 +87,10 @@ class Execution:
     def __post_init__(self) -> None:
         if self.reduced not in REDUCED:
             raise InputError(f"'{self.reduced}' is not allowed; allowed: {', '.join(REDUCED)}", field="reduced")
-        if not isinstance(self.tolerance, int | float) or not self.tolerance > 0:
-            raise InputError(f"must be a positive number of kelvins, not {self.tolerance!r}", field="tolerance")
+        if not isinstance(self.tolerance, int | float):
+            raise InputError(f"must be a number of kelvins, not {self.tolerance!r}", field="tolerance")
+        if not self.tolerance > 0:
+            raise InputError(f"must be positive, not {self.tolerance:g} K", field="tolerance")
 
     def given(self, options: ExecutionOptions) -> Execution:
         """The execution with some fields replaced."""
