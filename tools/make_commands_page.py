@@ -10,7 +10,8 @@ from typing import Any
 import typer.main
 
 from tyrefem.cli import app
-from tyrefem.schemas.answer_schema import parts_of, unit_of
+from tyrefem.output.key_units import unit_of
+from tyrefem.schemas.answer_schema import parts_of
 from tyrefem.schemas.answers import ANSWERS, Keys
 from tyrefem.schemas.rows import rows_of
 

@@ -34,6 +34,8 @@ def test_numbers_files_and_picture(here: Path, capfd: pytest.CaptureFixture[str]
         assert law["temperatures_degC"]["hottest"] >= max(
             value for name, value in law["temperatures_degC"].items() if name != "contained-air"
         )
+        assert law["hottest"]["temperature_degC"] == law["temperatures_degC"]["hottest"]
+        assert law["hottest"]["region"] in ("carcass", "tread", "sidewall", "bead")
     # One state of strain is its own largest change; harmonics lose more than one cycle of the same height.
     for law in ("arcs", "barrel"):
         assert laws[law]["heating_energy_J"] == laws[law]["energy_J"]

@@ -13,7 +13,9 @@ import pandas as pd
 import pytest
 from toy_study import Sensor, measured_from
 
+from tyrefem.cli.compare import _lines
 from tyrefem.compare import compare
+from tyrefem.compare.stored import read_comparison
 from tyrefem.errors import InputError
 from tyrefem.output import atomic_folder, atomic_path
 from tyrefem.reports.comparison import deviations, save
@@ -58,6 +60,19 @@ def test_tables_come_back(folder, comparison):
     residuals = pd.read_csv(folder / "residuals.csv")
     np.testing.assert_allclose(residuals.error_K, residuals.computed_degC - residuals.measured_degC, rtol=0, atol=1e-12)
     assert len(residuals) == 3 * 61 + 2 * 13
+
+
+def test_runs_come_back_whatever_they_are_called(study, tmp_path):
+    names = ["NA", "None", "01"]
+    save(compare(study, [measured_from(study, EVERY_20, name=name) for name in names]), tmp_path)
+    back = read_comparison(tmp_path)
+    assert list(back.curves) == names
+    assert list(back.table["run"].unique()) == list(back.residuals["run"].unique()) == names
+
+
+def test_printed_times_keep_their_seconds(comparison):
+    table = comparison.table.assign(at_s=1172.5)
+    assert _lines(table).count(" 1172.5 ") == len(table)
 
 
 def test_json_holds_the_table(folder, comparison):

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from hidden import RIVALS, RUNS, Case
+from jsonschema import Draft7Validator
 from typer.testing import CliRunner
 
 from tyrefem.cli import app
@@ -31,6 +32,7 @@ from tyrefem.diagnose.unknowns.energy_shapes import SHAPE
 from tyrefem.diagnose.unknowns.unknown import of_effect
 from tyrefem.effects import catalogue
 from tyrefem.inputs.name_patterns import SCALES
+from tyrefem.schemas.answer_schema import answer_schema
 
 
 @pytest.fixture(scope="module")
@@ -116,6 +118,7 @@ def test_the_command_calibrates_a_layout(
     assert result.exit_code == 0, result.output
     assert "60 quick cases of study, seed 1" in result.output
     record = json.loads((out / "calibration.json").read_text(encoding="utf-8"))
+    Draft7Validator(answer_schema("isolability")["properties"]["calibration"]).validate(record)
     assert len(record["layout"]["runs"]) == len(RUNS)
     assert sum(record["ranks"]["base_numbers_and_sensors"]["counts"]) >= 50
     assert record["unexplained"]["nothing_hidden"]["misfit"]["of"] == 100_000

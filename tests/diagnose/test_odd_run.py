@@ -99,7 +99,7 @@ def test_a_folder_gives_verdict_readings_and_amended_study_back(diagnosis: Diagn
     back = tf.load(tmp_path)
     assert isinstance(back, DiagnosisRecord)
     assert back.verdict == diagnosis.verdict
-    assert back.named == pytest.approx({"hot-road": diagnosis.to_dict()["effects"][0]["probability"]})
+    assert back.named == pytest.approx({f"hot-road in {ODD}": diagnosis.to_dict()["effects"][0]["probability"]})
     assert back.study is not None
     assert back.study.data["effects"] == diagnosis.study.data["effects"]
     assert back.rms["before"]["rms_K"] == pytest.approx(diagnosis.rms(after=False, held_out=False))

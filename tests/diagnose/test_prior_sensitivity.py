@@ -17,6 +17,7 @@ from tyrefem.diagnose.fitting.criterion import LogEvidence
 from tyrefem.diagnose.fitting.exhaustive import Exhaustive
 from tyrefem.diagnose.fitting.fits import FittedSet
 from tyrefem.diagnose.fitting.selection import ScoredSet, SelectionProblem
+from tyrefem.diagnose.numbers import percent
 from tyrefem.diagnose.settings import DEFAULT
 from tyrefem.diagnose.unknowns.candidates import Candidate, Members, SetPrior
 from tyrefem.diagnose.unknowns.unknown import Unknown
@@ -120,7 +121,7 @@ def test_a_name_that_a_prior_decides_is_said_and_a_certain_one_is_silent() -> No
     weaker = next(each for each in changes if (each.prior, each.factor) == (PROBABILITY, FACTORS[0]))
     assert (weaker.effect, weaker.verdict, weaker.decides) == ("early", CONFOUNDED, True)
     sentence = prior_words(changes, judgement.verdict)[0]
-    share = f"{100 * weaker.share:.0f} %"
+    share = percent(weaker.share)
     assert sentence.startswith(
         "This name rests on the prior of early: with a third of its probability before the data, confounded "
         f"(most probable: early, {share})"

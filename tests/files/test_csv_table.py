@@ -16,7 +16,7 @@ pytestmark = pytest.mark.fast
 
 def test_as_pandas_writes_it(tmp_path: Path) -> None:
     columns = {
-        "time_s": np.array([0.0, 1 / 3, 1e-17, 123456789.0]),
+        "length_m": np.array([0.0, 1 / 3, 1e-17, 123456789.0]),
         'name, "quoted"': ["plain", 'with "quotes"', "with, comma", "grüß dich"],
         "count": np.arange(4),
         "capped": [True, False, True, False],
@@ -24,6 +24,14 @@ def test_as_pandas_writes_it(tmp_path: Path) -> None:
     }
     written = write_csv(columns, tmp_path / "folder" / "table.csv")
     assert written.read_text(encoding="utf-8") == pd.DataFrame(columns).to_csv(index=False, float_format="%.6g")
+
+
+@pytest.mark.parametrize("name", ["time_s", "time [s]"])
+def test_times_of_a_week_stay_apart(name: str, tmp_path: Path) -> None:
+    times = 604800.0 + np.array([0.0, 0.1, 0.2])
+    table = pd.read_csv(write_csv({name: times, "heat_W": times}, tmp_path / "table.csv"))
+    assert table[name].tolist() == times.tolist()
+    assert table["heat_W"].nunique() == 1
 
 
 def test_columns_of_different_length_write_nothing(tmp_path: Path) -> None:

@@ -129,7 +129,8 @@ def test_every_command_lists_the_plugins_that_take_part(
     film = 'boundaries.outside_air={law = "power-film", at_10_m_s = "30 W/m**2/K"}'
     # A lamp is a candidate of every diagnosis, and the film the law of this study.
     for words, expected in {
-        "isolability": ["power-film", "lamp"], "blind": ["power-film", "lamp"], "explore": ["power-film"],
+        "isolability": ["power-film", "lamp"], "blind": ["power-film", "lamp"], "plan": ["power-film", "lamp"],
+        "explore": ["power-film"],
     }.items():  # fmt: skip
         command = next(each for each in commands() if each.words == words)
         assert main(command.line(command.out(here / "new" / words), "--json", "--set", film)) == 0

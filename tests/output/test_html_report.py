@@ -9,8 +9,10 @@ from html.parser import HTMLParser
 
 import pytest
 
+import tyrefem as tf
 from tyrefem.geometry.place_names import place
 from tyrefem.reports.figures import pictures
+from tyrefem.reports.inputs import material_rows
 from tyrefem.reports.words import number
 
 VOID = {"meta", "img", "br", "link", "input", "hr"}
@@ -184,3 +186,9 @@ def test_the_study_file_as_written_or_as_run(written, tmp_path):
 )
 def test_places_in_words(study, s, depth, words):
     assert place(study.section, s, depth) == words
+
+
+def test_a_small_standard_deviation_is_not_rounded_to_nothing():
+    card = {"base": "nasa-tread", "density": {"relative_sd": 0.004}, "specific_heat": {"relative_sd": 0.25}}
+    rows, _ = material_rows(tf.study("nasa-22x5.5-8pr", {"materials.tread": card}))
+    assert {"± 0.4 %", "± 25 %"} <= {row["cells"][4].removesuffix(", not used here") for row in rows}

@@ -249,6 +249,61 @@ def test_folders_of_other_commands_give_summary_tables_and_study(tmp_path: Path)
         record.table("sweeep")
 
 
+def written(folder: Path, **files: Any) -> Path:
+    """A folder with JSON files."""
+    for name, data in files.items():
+        (folder / f"{name}.json").write_text(json.dumps(data), encoding="utf-8")
+    return folder
+
+
+def test_the_answer_of_a_rig_is_not_its_short_summary(tmp_path: Path) -> None:
+    record = tf.load(written(tmp_path, summary={"command": "rig identify", "rig": "a"}, rig={"rig": "a", "words": []}))
+    assert isinstance(record, Record)
+    assert record.summary == {"rig": "a", "words": []}
+
+
+def test_the_calibration_belongs_to_the_answer(tmp_path: Path) -> None:
+    folder = written(tmp_path, summary={"command": "isolability"}, isolability={"sets": 3})
+    plain = tf.load(folder)
+    assert isinstance(plain, Record)
+    assert plain.summary == {"sets": 3}
+    again = tf.load(written(folder, calibration={"cases": 40}))
+    assert isinstance(again, Record)
+    assert again.summary == {"sets": 3, "calibration": {"cases": 40}}
+
+
+def test_names_in_tables_stay_as_they_were_written(tmp_path: Path) -> None:
+    rows = "case,run,value,note,failure\n01,NA,1.5,,\n02,null,,,\n"
+    (written(tmp_path, summary={"command": "run"}) / "campaign.csv").write_text(rows, encoding="utf-8")
+    record = tf.load(tmp_path)
+    assert isinstance(record, Record)
+    table = record.table("campaign")
+    assert list(table) == ["case", "run", "value", "note", "failure"]
+    assert (table["case"].tolist(), table["run"].tolist()) == (["01", "02"], ["NA", "null"])
+    assert (table["note"].tolist(), table["failure"].tolist()) == (["", ""], ["", ""])
+    assert table["value"].tolist() == pytest.approx([1.5, np.nan], nan_ok=True)
+    (tmp_path / "plain.csv").write_text("a\n1\n2\n", encoding="utf-8")
+    assert Record(tmp_path, "run", True).table("plain")["a"].tolist() == [1, 2]
+
+
+def test_a_loaded_diagnosis_names_every_effect(tmp_path: Path) -> None:
+    offsets = [
+        {"name": "sensor-offset", "variant": {"sensor": sensor}, "runs": None, "probability": share}
+        for sensor, share in (("a", 0.97), ("b", 0.99))
+    ]
+    hot = {"name": "hot-road", "variant": {}, "runs": ["02"], "probability": 0.98}
+    rms = {"rms_K": 1.0, "held_out_rms_K": None}
+    verdict = {
+        "study": "tyre", "verdict": "identified", "effects": [*offsets, hot], "reasons": [], "changes": [],
+        "candidates": [], "sets": [{"effects": ["hot-road"], "probability": 0.99999}],
+        "gap": {"before": rms, "after": rms, "noise_K": 0.5},
+    }  # fmt: skip
+    back = tf.load(written(tmp_path, verdict=verdict))
+    assert isinstance(back, tf.api.DiagnosisRecord)
+    assert back.named == {"sensor-offset (a)": 0.97, "sensor-offset (b)": 0.99, "hot-road in 02": 0.98}
+    assert "hot-road (more than 99.99 %)" in repr(back)
+
+
 def test_a_comparison_comes_back_from_its_folder(tmp_path: Path) -> None:
     coarse = {"mesh.size": "14 mm", "mesh.element": "P1", "numerics.tolerance": "1 delta_degC"}
     comparison = tf.study("example-validation", coarse).compare(inputs=False)

@@ -96,10 +96,12 @@ def test_pyvista_has_the_temperatures_and_the_ring(run: Result) -> None:
 def test_parquet_has_full_digits_and_units(run: Result, tmp_path: Path) -> None:
     run.save(tmp_path, parquet=True)
     table = pd.read_parquet(tmp_path / "readings.parquet")
+    assert (table.pop("contained-air_pressure_Pa") == run.gas_pressure).all()
     assert table.equals(run.readings)
     schema = parquet.read_schema(tmp_path / "readings.parquet")
     assert {schema.field(name).metadata[b"unit"] for name in run.study.sensors} == {b"degC"}
     assert schema.field("time_s").metadata[b"unit"] == b"s"
+    assert schema.field("contained-air_pressure_Pa").metadata[b"unit"] == b"Pa"
     budget = parquet.read_schema(tmp_path / "heat_budget.parquet")
     assert budget.field("energy_J").metadata[b"unit"] == b"J"
     assert budget.field("kind").metadata is None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -10,8 +11,10 @@ import pytest
 
 import tyrefem as tf
 from tyrefem.cli import main
+from tyrefem.cli.critical_speed import _rise_words
 from tyrefem.mechanics.rolling.amplification import Amplification, Onset, amplification
 from tyrefem.mechanics.rolling.press import press
+from tyrefem.reports.figures.rise import rise_figure
 
 COARSE = {"mesh.size": "16 mm", "mechanics.strain": "fem"}
 
@@ -73,6 +76,25 @@ def test_the_nearest_effect_is_the_effect(rise: Amplification) -> None:
     assert rise.onset.error < 0.15
 
 
+def test_rises_at_several_temperatures_are_told_apart(rise: Amplification) -> None:
+    assert rise.temperature == study().card.drive.initial
+    warm = replace(rise, temperature=80.0)
+    assert warm.summary()["temperature_degC"] == 80.0
+    assert {row["temperature_degC"] for row in warm.rows()} == {80.0}
+    assert "kPa, 80 degC, " in _rise_words(warm, several=True)
+    assert "degC" not in _rise_words(warm, several=False)
+    _, labels = rise_figure([rise, warm]).axes[0].get_legend_handles_labels()
+    told = [label for label in labels if "kPa" in label]
+    assert len(set(told)) == len(told) == 4
+    assert "°C" not in "".join(rise_figure([warm]).axes[0].get_legend_handles_labels()[1])
+
+
+def test_limited_by_loss_is_a_truth_with_its_words(rise: Amplification) -> None:
+    limited = replace(rise, rises=(rise.rises[0], replace(rise.rises[1], limited="waves stand")))
+    told = [(row["limited_by_loss_only"], row["limited_because"]) for row in limited.rows()]
+    assert told == [(False, ""), (True, "waves stand")]
+
+
 def test_command_prints_and_writes_it(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
@@ -86,5 +108,5 @@ def test_command_prints_and_writes_it(
     text = capfd.readouterr().out
     assert "heat and strain over those without inertia" in text
     assert "nearest effect: standing-wave with gain" in text
-    assert (tmp_path / "out" / "rise.csv").read_text().startswith("pressure_Pa,load_N,speed_m_s")
+    assert (tmp_path / "out" / "rise.csv").read_text().startswith("pressure_Pa,temperature_degC,load_N,speed_m_s")
     assert (tmp_path / "out" / "rise.png").stat().st_size > 5000

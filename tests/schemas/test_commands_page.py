@@ -65,6 +65,19 @@ def test_a_key_without_words_is_seen_at_any_depth() -> None:
     assert list(unknown_keys({"card": {"depth": {"any": 1}}}, schema)) == []
 
 
+def test_keys_of_one_kind_of_answer_are_known() -> None:
+    """Of a wear by the drive, a rotating tyre, a card with areas, and a data's model of another kind."""
+    for command, key, places in (
+        ("wear", "distance_m", ()), ("modes", "direction", ("modes",)), ("modes", "axle_frequency_Hz", ("modes",)),
+        ("thermal-card", "per_area_sd", ("numbers",)), ("blind", "identifiable_alone", ("cases",)),
+        ("blind", "stated", ("reliability",)), ("blind", "fault", ("failures",)),
+    ):  # fmt: skip
+        schema = answer_schema(command)
+        for place in places:
+            schema = schema["properties"][place]["items"]
+        assert key in schema["properties"], (command, key)
+
+
 def test_deep_keys_of_a_diagnosis_are_in_the_schema() -> None:
     schema = answer_schema("diagnose")
     law = schema["properties"]["missing_heat"]["properties"]["law"]["properties"]

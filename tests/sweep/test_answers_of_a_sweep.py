@@ -21,6 +21,7 @@ from tyrefem.errors import InputError
 from tyrefem.reduced.surrogate import SurrogateCertificate
 from tyrefem.reports import sweep_answer_figures as answer_pictures  # noqa: F401  registers its pictures
 from tyrefem.reports.sweep_figures import figures
+from tyrefem.reports.sweep_files import computation_sentence
 from tyrefem.sweep.envelope import Envelope, checked_pairs, envelope
 from tyrefem.sweep.evaluation import Evaluator
 from tyrefem.sweep.optimum import Optimum, optimum
@@ -107,6 +108,21 @@ def test_limits_that_nothing_keeps_are_said_to_be_so(swept: Sweep) -> None:
     for _, _, picture in figures(Responses(none)):
         low, high = picture.axes[0].dataLim.intervaly
         assert picture.axes[0].get_ylim()[0] > low - (high - low)
+
+
+def test_one_of_anything_is_said_in_the_singular(swept: Sweep, tyre: Study) -> None:
+    coolest, second = sorted(swept.table["hottest_degC"])[:2]
+    limits = {"hottest_degC": LimitCard(below=(coolest + second) / 2)}
+    one = Sweep(replace(swept.plan, limits=limits), swept.outcomes)
+    assert Responses(one).words[0] == "1 of 6 variants keeps the limits."
+    front_of_one = ParetoFront(one, {"hottest_degC": "min", "rolling_resistance_coefficient": "min"})
+    assert front_of_one.words[0].startswith("1 of 1 variants is not dominated")
+    card = EnvelopeCard(below=120.0, loads=("2 kN",), pressures=("500 kPa",))
+    answer = envelope(tyre, card, scheduler=Formula(heated), reduced="never")
+    assert replace(answer, runs=1).words[-1] == "Computed by 1 full run."
+    certificate = SurrogateCertificate({}, cases=4, worst=0.5, tolerance=1.0, trained_on=12, amended=1)
+    by_model = Sweep(swept.plan, swept.outcomes, certificate, "")
+    assert "from 11 runs and 1 correction, within" in computation_sentence(by_model)
 
 
 def test_one_failing_variant_is_recorded_and_the_sweep_goes_on(tyre: Study) -> None:
@@ -319,12 +335,15 @@ def test_what_a_reduced_model_finds_keeps_its_limits_in_a_full_run(tyre: Study, 
     answer = optimum(plan, OptimiseCard(maximise="hottest_degC", runs=400), scheduler=scheduler)
     assert 39.7 < answer.full["hottest_degC"] < 40.0
     assert scheduler.asked == 2  # the study as it is, and the best variant
-    assert "error of 0.5 K" in answer.words[-1]
+    assert answer.words[-1].endswith("error of 0.5 K; highest temperature to ±0.5 K.")
     assert answer.swept.certificate == Optimist.certificate
     assert len(made) == 1
     by = answer.table["by"]
     assert answer.table["error_K"][by == "reduced"].eq(0.5).all()
     assert answer.table["error_K"][by == "full"].eq(0.0).all()
+    # The full run of the best variant is no other variant.
+    assert answer.to_dict()["evaluated"] == (by == "reduced").sum() == len(answer.table) - 1
+    assert answer.words[-2].startswith(f"{len(answer.table) - 1} different variants evaluated")
 
 
 def test_a_search_that_is_finished_makes_no_model_again(tyre: Study, made: list[Optimist], tmp_path: Path) -> None:

@@ -73,6 +73,14 @@ def test_fit_gives_the_coefficients_back(fit):
     assert set(KNOWN) - {"PKY4", "QBZ10"} <= set(fit.fitted)
 
 
+def test_the_formula_can_be_built_from_the_summary(fit):
+    summary = fit.summary()
+    assert set(fit.fitted) <= set(summary["coefficients"])
+    again = MagicFormula(summary["coefficients"], summary["nominal_load_N"], 2.2e5, summary["unloaded_radius_m"])
+    assert again.cornering_stiffness(4200.0) == fit.formula.cornering_stiffness(4200.0) < -1e4
+    assert (again.aligning_moment(4200.0, ANGLES, 0.03) == fit.formula.aligning_moment(4200.0, ANGLES, 0.03)).all()
+
+
 def test_noise_moves_the_curves_by_no_more_than_itself():
     points = curves()
     noise = np.random.default_rng(3).normal(0.0, 20.0, len(points))

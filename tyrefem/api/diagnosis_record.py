@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from tyrefem.api.record import Record
 from tyrefem.api.verbs import shown
+from tyrefem.diagnose.numbers import percent
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -30,7 +31,7 @@ class DiagnosisRecord(Record):
     def _facts(self) -> Mapping[str, Any]:
         before, after = self.rms["before"], self.rms["after"]
         facts: dict[str, Any] = {
-            "most probable": ", ".join(f"{key} ({100 * share:.0f} %)" for key, share in list(self.sets.items())[:3]),
+            "most probable": ", ".join(f"{key} ({percent(share)})" for key, share in list(self.sets.items())[:3]),
             "reasons": " ".join(self.summary["reasons"]),
             "changes": [change["key"] for change in self.summary["changes"]],
             "measured - computed": f"{_kelvin(before['rms_K'])} rms before, {_kelvin(after['rms_K'])} after; "
@@ -73,8 +74,11 @@ class DiagnosisRecord(Record):
 
     @property
     def named(self) -> dict[str, float]:
-        """Named effect -> probability; empty without a name."""
-        return {each["name"]: each["probability"] for each in self.summary["effects"]}
+        """Named effect, with its variant and its runs -> probability; empty without a name."""
+        from tyrefem.diagnose.unknowns.candidates import key_of
+
+        effects = self.summary["effects"]
+        return {key_of(each["name"], each["variant"], each["runs"]): each["probability"] for each in effects}
 
     @property
     def sets(self) -> dict[str, float]:
@@ -117,7 +121,7 @@ class DiagnosisRecord(Record):
 
     @functools.cached_property
     def again(self) -> DiagnosisRecord | None:
-        """The further look at the same data; None without."""
+        """The further look at the same data; None without, and where it found "no gap": see ``summary["again"]``."""
         folder: Path = self.folder / AGAIN
         return DiagnosisRecord(folder, self.command, self.complete) if (folder / "verdict.json").is_file() else None
 

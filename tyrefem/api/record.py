@@ -22,7 +22,12 @@ if TYPE_CHECKING:
 ANSWERS = (
     "verdict.json", "comparison.json", "plan.json", "critical-speed.json", "press.json", "roll.json", "forces.json",
     "modes.json", "blind.json", "isolability.json", "strain.json", "thermal-card.json",
+    "rig.json",
 )  # fmt: skip
+#: Beside ``isolability.json`` with ``--calibrate``: the answer's ``calibration``.
+CALIBRATION = "calibration.json"
+#: Columns of text: 01 is no number there, NA is a name, empty stays empty.
+TEXTS = ("run", "sensor", "phase", "case", "failure", "note")
 #: Files of a study in such a folder.
 STUDIES = ("amended.toml", "study.toml")
 
@@ -62,7 +67,11 @@ class Record(Brief):
         """
         file = next((self.folder / name for name in (*ANSWERS, SUMMARY) if (self.folder / name).is_file()), None)
         assert file is not None, "made of a folder with a summary"
-        return {key: value for key, value in read_json(file).items() if key not in BOOKKEEPING}
+        answer = {key: value for key, value in read_json(file).items() if key not in BOOKKEEPING}
+        calibration = self.folder / CALIBRATION
+        if file.name == "isolability.json" and calibration.is_file():
+            answer["calibration"] = read_json(calibration)
+        return answer
 
     @property
     def verdict(self) -> str:
@@ -83,13 +92,11 @@ class Record(Brief):
         ------
         InputError : no such table; the file cannot be read.
         """
-        import pandas as pd
-
         if name not in self.names:
             raise InputError(f"has no table '{name}'{nearest(name, self.names)}", file=self.folder)
         file = self.folder / f"{name}.parquet"
         try:
-            return pd.read_parquet(file) if file.is_file() else pd.read_csv(file.with_suffix(".csv"))
+            return _read_table(file if file.is_file() else file.with_suffix(".csv"))
         except (OSError, ValueError) as error:
             raise InputError(f"cannot be read: {error!s:.80}", file=self.folder / f"{name}.csv") from None
 
@@ -109,6 +116,15 @@ class Record(Brief):
     def cases(self) -> tuple[str, ...]:
         """Cases of a campaign whose results are here: `tyrefem.load` of ``folder / "cases" / name`` gives each."""
         return tuple(sorted(file.parent.name for file in self.folder.glob("cases/*/result.npz")))
+
+
+def _read_table(file: Path) -> pd.DataFrame:
+    import pandas as pd
+
+    if file.suffix == ".parquet":
+        return pd.read_parquet(file)
+    texts = pd.read_csv(file, usecols=lambda column: column in TEXTS, dtype=str, keep_default_na=False)
+    return pd.read_csv(file).assign(**texts)
 
 
 def read_json(file: Path) -> dict[str, Any]:

@@ -30,6 +30,8 @@ from tyrefem.output.folder import results_folder
 if TYPE_CHECKING:
     from concurrent.futures import Executor
 
+    import pandas as pd
+
 
 def compare(
     study: StudyArgument,
@@ -87,12 +89,17 @@ def compare(
             comparison.save(folder)
         store.clear()
     answer_with(comparison.to_dict())
-    columns = ["run", "sensor", "phase", "n", "bias_K", "rms_K", "largest_K", "at_s", "u_val_K", "beyond"]
-    say(comparison.table[columns].to_string(index=False, float_format="%.3g"))
+    say(_lines(comparison.table))
     say(comparison.summary)
     for note in comparison.notes:
         say(note if note.startswith(("Note: ", "ERROR: ")) else f"Note: {note}")
     say(f"results in {folder}; read {folder / 'comparison.html'}")
+
+
+def _lines(table: pd.DataFrame) -> str:
+    columns = ["run", "sensor", "phase", "n", "bias_K", "rms_K", "largest_K", "at_s", "u_val_K", "beyond"]
+    formats = {"at_s": "{:.6g}".format}
+    return str(table[columns].to_string(index=False, float_format="%.3g", formatters=formats))
 
 
 @contextmanager

@@ -60,8 +60,9 @@ def print_critical_speeds(
     rows = {"study": study.name, "critical": [result.row() for result in results]}
     answer_with({**rows, "rises": [each.summary() for each in rises]} if rise else rows)
     say(_words(results))
+    several = len({each.temperature for each in rises}) > 1
     for each in rises:
-        say(_rise_words(each))
+        say(_rise_words(each, several=several))
     say(f"results in {folder}")
 
 
@@ -109,8 +110,11 @@ def _words(results: list[CriticalSpeed]) -> str:
     return "\n".join(lines)
 
 
-def _rise_words(rises: Amplification) -> str:
-    lines = [f"  heat and strain over those without inertia, {rises.pressure / 1e3:.0f} kPa, {rises.load / 1e3:.3g} kN"]
+def _rise_words(rises: Amplification, *, several: bool) -> str:
+    """Lines on a rise; ``several``: of several temperatures."""
+    warm = f", {rises.temperature:.4g} degC" if several else ""
+    state = f"{rises.pressure / 1e3:.0f} kPa{warm}, {rises.load / 1e3:.3g} kN"
+    lines = [f"  heat and strain over those without inertia, {state}"]
     for rise in rises.rises:
         doubt = "  loss alone limits some waves" if rise.limited else ""
         lines.append(f"    {rise.speed:6.1f} m/s  heat {rise.loss:.3f}  strain {rise.strain:.3f}{doubt}")

@@ -38,7 +38,9 @@ def read_comparison(folder: Path) -> ComparisonData:
     try:
         record = json.loads((folder / RECORD).read_text(encoding="utf-8"))
         table, residuals, curves = (
-            pd.read_csv(folder / name, dtype={"run": str, "sensor": str, "phase": str})
+            pd.read_csv(
+                folder / name, dtype={"run": str, "sensor": str, "phase": str}, keep_default_na=False, na_values=[""]
+            )
             for name in (TABLE, RESIDUALS, CURVES)
         )
         return ComparisonData(

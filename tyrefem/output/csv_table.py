@@ -10,6 +10,9 @@ from typing import Any
 
 from tyrefem.output import atomic_path
 
+#: Columns with twelve digits: six are too few for a time, as no two rows may have the same.
+TIMES = ("time_s", "time [s]")
+
 
 def columns_of(rows: Sequence[Mapping[str, Any]]) -> dict[str, list[Any]]:
     """Rows with the same keys as columns.
@@ -21,7 +24,8 @@ def columns_of(rows: Sequence[Mapping[str, Any]]) -> dict[str, list[Any]]:
 
 
 def write_csv(columns: Mapping[str, Iterable[Any]], path: Path) -> Path:
-    """Write columns of equal length, completely or not at all: floats with six digits, NaN and None empty.
+    """Write columns of equal length, completely or not at all: floats with six digits, `TIMES` with twelve;
+    NaN and None empty.
 
     Raises
     ------
@@ -29,14 +33,15 @@ def write_csv(columns: Mapping[str, Iterable[Any]], path: Path) -> Path:
     """
     # `tolist` makes Python's numbers of numpy's.
     values = [each.tolist() if hasattr(each, "tolist") else list(each) for each in columns.values()]
+    digits = [12 if name in TIMES else 6 for name in columns]
     with atomic_path(path) as temporary, temporary.open("w", encoding="utf-8", newline="") as stream:
         writer = csv.writer(stream, lineterminator="\n")
         writer.writerow(columns)
-        writer.writerows([_cell(value) for value in row] for row in zip(*values, strict=True))
+        writer.writerows(map(_cell, row, digits) for row in zip(*values, strict=True))
     return path
 
 
-def _cell(value: Any) -> Any:
+def _cell(value: Any, digits: int) -> Any:
     if isinstance(value, float):
-        return "" if math.isnan(value) else f"{value:.6g}"
+        return "" if math.isnan(value) else f"{value:.{digits}g}"
     return value

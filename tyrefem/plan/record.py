@@ -25,7 +25,7 @@ def record(plan: PlanData) -> dict[str, Any]:
         "notes": list(plan.notes),
         "wall_time_s": plan.seconds,
         "versions": versions(),
-        **plugin_summary(None, [list(entry.key) for entry in plan.beliefs.sets]),
+        **plugin_summary(plan.beliefs.study, [member.name for entry in plan.beliefs.sets for member in entry.members]),
     }
     plain: dict[str, Any] = jsonable(contents)
     return plain

@@ -31,6 +31,7 @@ from tyrefem.reports.diagnosis_figures import pictures
 from tyrefem.reports.diagnosis_law import law_block
 from tyrefem.reports.diagnosis_missing import tells_missing_heat
 from tyrefem.reports.diagnosis_summary import SUMMARY, summary
+from tyrefem.reports.words import number
 
 if TYPE_CHECKING:
     from tyrefem.diagnose.diagnosis import DiagnosisData
@@ -247,7 +248,7 @@ def _correction(d: DiagnosisData, change: Change) -> dict[str, str]:
             "original": str(value_at(d.original.data, unknown.key, d.original.folder)),
             "amended": str(new),
             "change": f"{100 * relative:+z.1f} ± {100 * change.sd:.1f} %",
-            "prior": f"± {100 * unknown.sd:.0f} %",
+            "prior": f"± {number(100 * unknown.sd, 2)} %",
         }
     if unknown.effect == "film-scale":
         film = dict(unknown.choice)["film"].replace("_", " ")
@@ -257,7 +258,7 @@ def _correction(d: DiagnosisData, change: Change) -> dict[str, str]:
             "original": "from its law",
             "amended": f"times {math.exp(change.x):.3g}",
             "change": f"{100 * (math.exp(change.x) - 1):+z.1f} ± {100 * change.sd:.1f} %",
-            "prior": f"± {100 * unknown.sd:.0f} %",
+            "prior": f"± {number(100 * unknown.sd, 2)} %",
         }
     return {
         "what": f"{', '.join([*dict(unknown.choice).values(), *unknown.runs])}: {parameter_name(unknown)}",

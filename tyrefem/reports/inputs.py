@@ -37,7 +37,7 @@ def material_rows(study: StudyData) -> tuple[list[dict[str, Any]], list[str]]:
             if guess:
                 estimates.append(f"{region}: {label}")
             heads = ["", ""] if row else [region, card.title]
-            sd = "–" if entry.relative_sd is None else f"± {100 * entry.relative_sd:.0f} %"
+            sd = "–" if entry.relative_sd is None else f"± {number(100 * entry.relative_sd, 2)} %"
             if f"materials.{region}.{names.get(id(entry), '')}" in idle:
                 sd += ", not used here"
             rows.append({"cells": [*heads, label, value, sd, entry.source], "estimate": guess, "first": not row})

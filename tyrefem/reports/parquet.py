@@ -6,23 +6,21 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tyrefem.output import atomic_path
+from tyrefem.output.key_units import unit_of
 
 if TYPE_CHECKING:
     import pandas as pd
 
-#: Units that end the name of a column, after the last "_".
-UNITS = {"s": "s", "m": "m", "degC": "degC", "J": "J", "W": "W", "Pa": "Pa", "N": "N", "K": "K"}
 
-
-def unit_of(column: str, table: pd.DataFrame) -> str:
+def column_unit(column: str, table: pd.DataFrame) -> str:
     """Unit of a column: from ``table.attrs["units"]``, or from its name; empty: none.
 
     >>> import pandas as pd
-    >>> unit_of("energy_J", pd.DataFrame()), unit_of("region", pd.DataFrame())
-    ('J', '')
+    >>> column_unit("sliding_speed_m_s", pd.DataFrame()), column_unit("region", pd.DataFrame())
+    ('m/s', '')
     """
     stated: dict[str, str] = table.attrs.get("units", {})
-    return stated.get(column) or UNITS.get(column.rpartition("_")[2] if "_" in column else "", "")
+    return stated.get(column) or unit_of(column)
 
 
 def write_parquet(table: pd.DataFrame, path: Path) -> Path:
@@ -37,7 +35,7 @@ def write_parquet(table: pd.DataFrame, path: Path) -> Path:
 
     content = pyarrow.Table.from_pandas(table, preserve_index=False)
     columns = [
-        field.with_metadata({"unit": unit}) if (unit := unit_of(field.name, table)) else field
+        field.with_metadata({"unit": unit}) if (unit := column_unit(field.name, table)) else field
         for field in content.schema
     ]
     content = content.cast(pyarrow.schema(columns, metadata=content.schema.metadata))

@@ -161,8 +161,7 @@ def write_tables(result: ResultData, folder: Path, *, parquet: bool = False) -> 
 
     folder.mkdir(parents=True, exist_ok=True)
     readings: dict[str, Any] = {f"{name} [degC]": values for name, values in result.reading_columns.items()}
-    # Six digits are enough for a temperature, not for a time: no two rows may have the same time.
-    readings = {"time [s]": [f"{time:.12g}" for time in readings.pop("time_s [degC]")], **readings}
+    readings = {"time [s]": readings.pop("time_s [degC]"), **readings}
     readings["contained-air pressure [kPa]"] = result.gas_pressure / 1e3
     tables = {
         "readings.csv": readings,
@@ -176,7 +175,9 @@ def write_tables(result: ResultData, folder: Path, *, parquet: bool = False) -> 
         write_csv(table, folder / name)
         if parquet:
             # Full digits, and the columns' names of the Python table.
-            whole = result.readings if table is readings else pd.DataFrame(table)
+            whole = pd.DataFrame(table)
+            if table is readings:
+                whole = result.readings.assign(**{"contained-air_pressure_Pa": result.gas_pressure})
             write_parquet(whole, (folder / name).with_suffix(".parquet"))
     write_result(result, folder / FILE)
     result.study.save(folder / "study.toml")

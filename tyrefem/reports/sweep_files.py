@@ -197,8 +197,8 @@ def computation_sentence(sweep: Sweep) -> str:
     if certificate is not None:
         words += (
             f"; {sweep.reduced} by a reduced model from {certificate.trained_on - certificate.amended} runs"
-            f" and {certificate.amended} corrections, within {certificate.error:.2g} K of"
-            f" {certificate.cases} fresh full runs"
+            f" and {certificate.amended} correction{'' if certificate.amended == 1 else 's'},"
+            f" within {certificate.error:.2g} K of {certificate.cases} fresh full runs"
         )
     elif sweep.outcomes:
         words += "; all by full runs" + (f" ({sweep.why_full})" if sweep.why_full else "")

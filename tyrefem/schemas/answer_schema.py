@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator
 from typing import Any
 
+from tyrefem.output.key_units import unit_of
 from tyrefem.schemas.answers import ANSWERS, Keys
 from tyrefem.schemas.draft import DRAFT, Schema
 from tyrefem.schemas.rows import rows_of
@@ -14,23 +15,7 @@ TYPES: dict[str, Any] = {
     "text": "string", "number": "number", "integer": "integer", "truth": "boolean", "list": "array", "table": "object",
     "written": "object",
 }  # fmt: skip
-#: End of a key -> unit.
-UNITS = {
-    "_W_m2_K": "W/m2/K", "_mm_per_1000_km": "mm per 1000 km", "_mg_per_km": "mg/km", "_rad_s": "rad/s",
-    "_m_rad": "m/rad", "_km_h": "km/h", "_m_s": "m/s", "_N_m": "N/m", "_W_m2": "W/m2", "_1_m": "1/m", "_m3": "m3",
-    "_m2": "m2", "_degC": "degC", "_nats": "nats", "_Nm": "N m", "_Pa": "Pa", "_rad": "rad", "_km": "km", "_kg": "kg",
-    "_Hz": "Hz", "_N": "N", "_W": "W", "_J": "J", "_K": "K", "_m": "m", "_s": "s",
-}  # fmt: skip
 TITLE = "Answers of tyrefem's commands in JSON"
-
-
-def unit_of(key: str) -> str:
-    """The unit at the end of a key; empty: a pure number, or no number.
-
-    >>> unit_of("load_N"), unit_of("films_W_m2_K"), unit_of("harmonics")
-    ('N', 'W/m2/K', '')
-    """
-    return next((unit for end, unit in UNITS.items() if key.endswith(end)), "")
 
 
 def parts_of(line: str) -> tuple[str, bool, str]:

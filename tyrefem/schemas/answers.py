@@ -36,7 +36,7 @@ _WORDS = {"words": "list: The answer in sentences."}
 _PICTURE = {"picture": "text?: File of the picture; null without --out."}
 _MESH = {"mesh": "table: Mesher, element, size, number of nodes and elements, quality."}
 _ROLLED = {
-    "camber_rad": "number: Camber.", "friction": "number: Coefficient of friction.",
+    "camber_rad": "number: Camber.", "friction": "number?: Coefficient of friction; null: by a law.",
     "slip_angle_rad": "number: Slip angle.", "slip": "number: Longitudinal slip, positive drives.",
     "turn_slip_1_m": "number: Curvature of the path.", "speed_m_s": "number: Speed over the road.",
     "F_x_N": "number: Force on the tyre, forward.", "F_y_N": "number: Force on the tyre, to the left.",
@@ -44,7 +44,7 @@ _ROLLED = {
     "M_z_Nm": "number: Aligning moment.", "torque_Nm": "number: Torque of the axle.",
     "deflection_m": "number: Deflection.", "travel_m_rad": "number: Travel per radian of rotation.",
     "pneumatic_trail_m": "number?: Trail of the side force.",
-    "sliding_share": "number: Share of the contact that slides.", "friction_power_W": "number: Friction power.",
+    "sliding_share": "number: Share of the load on points that slide.", "friction_power_W": "number: Friction power.",
     "loss_power_W": "number?: Power that the rubber loses by the forces of the contact.",
     "hysteresis_power_W": "number: Power of the strain cycle, as a drive has it.",
     "axle_power_W": "number?: Power of the axle.",
@@ -69,12 +69,10 @@ ANSWERS: dict[str, Keys] = {
         "heat_budget": "table: Heat generated, stored and lost, J; imbalance.",
         "sliding*": "table: Friction heat of phases with slip.",
         "feedback*": "table: Convergence of the feedback of temperature on the strain cycle.",
-        "effects*": "list: The effects that acted.",
         "warnings": "list: Warnings.",
         "phases": "list: Phases with start, end and load case.",
         "numerics": "table: Time steps and solves.",
         "section": "table: Dimensions, areas and volumes of the section.",
-        "mechanics*": "table: Facts of the strain cycle.",
     },
     "run (campaign)": {
         "study": "text: Name of the study.",
@@ -202,7 +200,6 @@ ANSWERS: dict[str, Keys] = {
     "roll": {
         **_STUDY, **_WHEEL, **_ROLLED, **_VERSIONS,
         "harmonics": "integer: Number of Fourier harmonics.", "error": "number: Relative error of the harmonics.",
-        "standing*": "table: Stiffness of the standing tyre.", "rolling*": "table: Turning of the tyre with inertia.",
     },
     "roll (curve)": {
         **_STUDY, **_VERSIONS, "varied": "text: slip_angle or slip.", "points": "list: The forces at every slip.",
@@ -210,7 +207,7 @@ ANSWERS: dict[str, Keys] = {
         "*": "any: Stiffnesses of the curve.",
     },
     "forces": {
-        **_STUDY, **_WHEEL, **_VERSIONS, "friction": "number: Coefficient of friction.",
+        **_STUDY, **_WHEEL, **_VERSIONS, "friction": "number?: Coefficient of friction; null: by a law.",
         "magic_formula": "table: Coefficients, nominal load and pressure, rms over the largest force.",
         "points": "list: Forces, moments and wheel state of every point.",
     },
@@ -220,7 +217,7 @@ ANSWERS: dict[str, Keys] = {
         "strain_amplitude": "number: Amplitude of the vibration.",
         "modulus_over_that_of_the_card": "table: Region -> factor on the modulus.",
         "nodes_of_nine_node_elements": "integer: Nodes of the mechanical mesh.",
-        "angular_speed_rad_s*": "number: Rotation.", "speed_m_s*": "number: Speed of the rotation.",
+        "angular_speed_rad_s*": "number: Rotation.",
     },
     "life": {
         **_STUDY, **_FOLDER, **_VERSIONS, "about": "text: What a life is.", "sum": "text: How the phases are summed.",
@@ -244,11 +241,12 @@ ANSWERS: dict[str, Keys] = {
         "most_wear_mm_per_1000_km": "number: Greatest wear.", "mass_mg_per_km": "number: Mass worn.",
         "card": "written: The [wear] of the tread in SI; keys as in schemas/material.json.",
         "phases*": "list: Wear of every phase of the drive.",
-        "distance_km*": "number: Distance of the worn section.", "worn_section*": "any: The worn section.",
+        "distance_m*": "number: Distance of the drive.",
     },
     "strain": {
         **_STUDY, **_MESH, **_VERSIONS, "phase": "text: Phase of the load.", "load_N": "number: Load.",
-        "pressure_Pa": "number: Gauge pressure.", "load_law_deflection_m": "number?: Deflection by the load law.",
+        "pressure_Pa": "number: Gauge pressure.",
+        "load_law_deflection_m": "number?: Deflection by the load law; null: the law needs a rating.",
         "loss_convention": "text: nasa or sinusoid.", "parts": "table: Part -> region and title.",
         "volume_m3": "table: Part -> volume.",
         "laws": "table: Law -> deflection, energies by part, coefficient, temperatures.",

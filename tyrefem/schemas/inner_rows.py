@@ -31,7 +31,7 @@ _TURNING = {
     "rolling_resistance_by_loss_N": "number?: By the loss.", "rolling_resistance_balance": "number?: Their difference.",
 }  # fmt: skip
 _FREQUENCY = {
-    "rate": "number?: Share.", "low": "number: Lower end of the 95 % interval.", "high": "number: Upper end.",
+    "share": "number?: Share.", "low": "number: Lower end of the 95 % interval.", "high": "number: Upper end.",
     "*": "any: Numbers of cases.",
 }  # fmt: skip
 _RELIABILITY = {
@@ -40,6 +40,14 @@ _RELIABILITY = {
     "p_value": "number?: That both agree.",
 }  # fmt: skip
 _BIN = {"stated": "number: Mean stated probability.", **_FREQUENCY}
+_OTHER_MODEL = {
+    "strain_law": "text?: Strain law; null: the study's, with other energies.",
+    "strain_factor": "number?: Factor on its heat.",
+    "strain_modes": "list: Relative changes of the energy along the meridian, by cosine.",
+    "strain_modes_rms": "number?: Their root mean square.", "gauges": "table: Region -> factor on its thickness.",
+    "film_speed_exponents": "table: Effect on a film -> exponent of speed added to its law.",
+    "mesh": "table: Dotted name -> value.", "time_integration": "text: In words.",
+}  # fmt: skip
 _PLACE_OF_LAW = {
     "place": "text: In words.", "kind": "text: heat, flux, share ...", "where": "text: Layer, surface or region.",
     "station_m": "number?: Along the meridian.", "amplitude_W_m3*": "number: At the references.",
@@ -81,8 +89,9 @@ SECTION: Keys = {
     "crown_thickness_m": "number: Thickness at the crown.", "meridian_length_m": "number: From crown to bead.",
     "shoulder_s_m": "number: Place of the shoulder along the meridian.", "bead_r_m": "number: Radius of the bead.",
     "bead_z_m": "number: Its axial place.", "area_m2": "table: Region -> area of the section.",
-    "volume_m3": "table: Region -> volume of its ring, whole tyre.",
-    "inner_surface_m2": "number: Surface towards the contained air.", "gas_volume_m3": "number?: Of the contained air.",
+    "volume_m3": "table: Region -> volume of its ring; of a half section, of that half.",
+    "inner_surface_m2": "number: Surface towards the contained air; of a half section, of that half.",
+    "gas_volume_m3": "number?: Of the contained air; of a half section, of that half.",
     "boundaries": "list: Their names.", "*": "any: Further dimensions of the section.",
 }  # fmt: skip
 
@@ -282,6 +291,7 @@ INNER: dict[str, Keys] = {
     "isolability.calibration.conformal.fresh_cases{}": {"held": "integer: Cases that hold.", **_FREQUENCY},
     "blind.mesh_of_the_truth": {"*": "any: Dotted name -> value, as of --set."},
     "blind.cases[].rms_K": _BEFORE_AFTER, "blind.cases[].held_out_rms_K": _BEFORE_AFTER,
+    "blind.cases[].other_model": _OTHER_MODEL, "blind.failures[].other_model": _OTHER_MODEL,
     "blind.cases[].points": {"reduced": "integer: By reduced models.", "lean": "integer: By simulations."},
     "sweep.sample.finished": {
         "full": "integer: By full runs.", "reduced": "integer: By the reduced model.",
@@ -325,16 +335,19 @@ INNER: dict[str, Keys] = {
         "factors": "table: Region -> modulus over that of its card.", "passes": "integer: Presses that it took.",
     },
     "press --critical-speed.rises[]": {
-        "pressure_Pa": "number: Gauge pressure.", "load_N": "number: Load.", "rises": "list: By speed.",
+        "pressure_Pa": "number: Gauge pressure.", "temperature_degC": "number: Of tan delta.",
+        "load_N": "number: Load.", "rises": "list: By speed.",
         "refused_m_s": "number?: Speed without a solution.", "refused_because": "text?: Why.",
         "standing_wave": "table?: The effect standing-wave nearest to the rise; null: hardly any rise.",
     },
     "press --critical-speed.rises[].rises[]": {
-        "pressure_Pa": "number: Gauge pressure.", "load_N": "number: Load.", "speed_m_s": "number: Speed.",
+        "pressure_Pa": "number: Gauge pressure.", "temperature_degC": "number: Of tan delta.",
+        "load_N": "number: Load.", "speed_m_s": "number: Speed.",
         "rolling_resistance_N": "number: By the loss.", "loss_factor": "number: Heat over that without inertia.",
         "strain_factor": "number: Strain over that without inertia.",
         "standing_wave_factor": "number?: The same by the effect standing-wave.",
         "limited_by_loss_only": "truth: Beyond the critical speed without loss?",
+        "limited_because": "text: What the press says of it; else empty.",
     },
     "press --critical-speed.rises[].standing_wave": {
         "gain": "number: Of the effect.", "critical_speed_m_s": "number: Of the effect.",
@@ -360,9 +373,9 @@ INNER: dict[str, Keys] = {
         "mean_wear_mm_per_1000_km": "number: Mean of the rings.",
     },
     "strain.laws{}.hottest": {
-        "time_s": "number: When.", "r_m": "number: Radius.", "z_m": "number: Axial place, from the middle.",
+        "temperature_degC": "number: Highest temperature.", "region": "text: Where.", "time_s": "number: When.",
+        "r_m": "number: Radius.", "z_m": "number: Axial place, from the middle.",
         "s_m": "number: Along the meridian, from the crown.", "depth_m": "number: From the inner surface.",
-        "*": "any: Temperature and region.",
     },
     "strain.parts{}": {"region": "text: Region.", "title": "text: In words."},
     "rig simulate.highest_degC{}": {"*": "any: Sensor -> highest reading, degC."},

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.errors import InputError
+from tyrefem.inputs.loading import TrR64
 from tyrefem.inputs.study_plugins import plugin_summary
 from tyrefem.mechanics.finite_elements import GaussPoints
 from tyrefem.mechanics.strain_cycle import StrainCycle, Zone
@@ -107,12 +108,14 @@ class LawComparison:
         return first.result.tyre.schedule.cases[first.phase][first.knot]
 
     @property
-    def load_law_deflection(self) -> float:
-        """Deflection by the study's load law, m; finite elements compute another."""
-        case, rating = self.case, self.study.section.rating
-        if case.contact is None or rating is None:
+    def load_law_deflection(self) -> float | None:
+        """Deflection by the study's load law, m; finite elements compute another. None: the law needs a rating."""
+        case, law, rating = self.case, self.study.card.mechanics.load_law, self.study.section.rating
+        if case.contact is None:
             return case.deflection
-        return self.study.card.mechanics.load_law.deflection(case.load, case.pressure, rating)
+        if isinstance(law, TrR64) and rating is None:
+            return None
+        return law.deflection(case.load, case.pressure, rating)
 
     @functools.cached_property
     def mesh(self) -> TyreMesh:
@@ -193,7 +196,8 @@ class LawComparison:
         first, case, laws = self.outcomes[0], self.case, {}
         for outcome in self.outcomes:
             energies, heating = self.energies[outcome.law], self.heating[outcome.law]
-            place = outcome.result.extremes.iloc[0]
+            whole, *regions = outcome.result.extreme_rows
+            hottest = max(regions, key=lambda row: row["temperature_degC"])
             laws[outcome.law] = {
                 "deflection_m": outcome.deflection,
                 "energy_J": energies,
@@ -202,7 +206,7 @@ class LawComparison:
                 "cold_coefficient": outcome.result.rolling_resistance.cold_coefficient,
                 "coefficient": outcome.result.rolling_resistance.coefficient,
                 "temperatures_degC": outcome.temperatures,
-                "hottest": {name: float(place[name]) for name in ("time_s", "r_m", "z_m", "s_m", "depth_m")},
+                "hottest": whole | {"region": hottest["region"]},
             }
         return {
             "study": self.study.name,

@@ -208,9 +208,10 @@ class Envelope:
         rated = [f"{row['tkph']:.0f} t km/h at {row['pressure']}" for row in safe]
         if rated:
             sentences.append(f"Load times speed that is safe at all of these loads: {', '.join(rated)}.")
-        by = f"{self.runs} full runs"
+        s = "" if self.runs == 1 else "s"
+        by = f"{self.runs} full run{s}"
         if self.certificate is not None:
-            by = f"{self.runs} variants by a reduced model, error of temperatures {self.certificate.error:.2g} K"
+            by = f"{self.runs} variant{s} by a reduced model, error of temperatures {self.certificate.error:.2g} K"
         sentences.append(f"Computed by {by}.")
         return sentences
 

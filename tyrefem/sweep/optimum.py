@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import heapq
+import json
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -201,6 +202,12 @@ class Optimum:
         return {} if self.best is None else dict(self.swept.plan.variants[self.best])
 
     @property
+    def evaluated(self) -> int:
+        """Number of different variants; a full run after one by the reduced model is no other variant."""
+        variants = self.swept.plan.variants
+        return len({json.dumps(variants[n], sort_keys=True, default=str) for n in self.swept.outcomes})
+
+    @property
     def where(self) -> str:
         """`changes` as text, with four digits; linked numbers by their name."""
         values = {} if self.best is None else self.swept.plan.settings(self.best)
@@ -214,7 +221,8 @@ class Optimum:
             f"{'Smallest' if self.card.minimise else 'Largest'} {name_of(self.answer)}{limits and f' with {limits}'}"
         )
         failed = len(self.swept.failed)
-        tried = f"{len(self.swept.outcomes)} different variants evaluated" + (f", {failed} failed" if failed else "")
+        count = f"{self.evaluated} different variant{'' if self.evaluated == 1 else 's'} evaluated"
+        tried = count + (f", {failed} failed" if failed else "")
         if self.best is None:
             return [f"{heading}: no variant keeps the limits ({tried})."]
         sentences = [f"{heading}: {shown(self.answer, self.full[self.answer])} at {self.where}, by a full run."]
@@ -232,7 +240,8 @@ class Optimum:
         certificate = self.swept.certificate
         if certificate is not None:
             stated = certificate.errors.get(self.answer)
-            error = "" if stated is None else f"; {name_of(self.answer)} to ±{shown(self.answer, stated, 2)}"
+            width = "" if stated is None else f"{stated:.2g} {difference_unit(self.answer)}".strip()
+            error = f"; {name_of(self.answer)} to ±{width}" if width else ""
             sentences.append(f"The search used a reduced model with an error of {certificate.error:.2g} K{error}.")
         return sentences
 
@@ -244,7 +253,7 @@ class Optimum:
             "changes": self.changes,
             "answers": dict(self.full),
             "as_it_is": self.nominal.entry,
-            "evaluated": len(self.swept.outcomes),
+            "evaluated": self.evaluated,
             "exhaustive": self.exhaustive,
             "ended": self.ended,
             "why_full_runs": self.swept.why_full,

@@ -103,7 +103,8 @@ class ParetoFront:
             return []
         feasible = int(self.swept.overview()["feasible"].sum())
         together = ", ".join(("" if aim == "min" else "large ") + name_of(name) for name, aim in aims.items())
-        sentences = [f"{len(table)} of {feasible} variants are not dominated in {together}."]
+        are = "is" if len(table) == 1 else "are"
+        sentences = [f"{len(table)} of {feasible} variants {are} not dominated in {together}."]
         best: dict[str, tuple[Mapping[str, Any], list[str]]] = {}
         for name, aim in aims.items():
             row = extreme(table, name, least=aim == "min")

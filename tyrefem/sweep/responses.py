@@ -90,7 +90,7 @@ def words(sweep: Sweep, wanted: tuple[str, ...] = ()) -> list[str]:
     table = finished(sweep, wanted)
     keeping = int(table["feasible"].sum())
     if sweep.plan.limits and len(table):
-        sentences.append(f"{keeping or 'None'} of {len(table)} variants keep{'' if keeping else 's'} the limits.")
+        sentences.append(f"{keeping or 'None'} of {len(table)} variants keep{'' if keeping > 1 else 's'} the limits.")
     which = "" if not sweep.plan.limits else " of those" if keeping else " of all"
     for answer in judged(sweep, wanted):
         kept = table[table["feasible"]] if keeping else table

@@ -69,15 +69,16 @@ class MagicFormulaFit(Brief):
     errors: Mapping[str, float]
 
     def summary(self) -> dict[str, Any]:
-        """Plain data, SI."""
+        """Plain data, SI; ``coefficients``: fitted ones and all others that are not zero."""
         formula = self.formula
+        coefficients = {name: float(value) for name, value in formula.coefficients.items()}
         return {
             "nominal_load_N": formula.nominal_load,
             "nominal_pressure_Pa": formula.nominal_pressure,
             "unloaded_radius_m": formula.radius,
             "points": len(self.points),
             "rms_over_largest": dict(self.errors),
-            "coefficients": {name: float(formula.coefficients[name]) for name in self.fitted},
+            "coefficients": {name: value for name, value in coefficients.items() if value or name in self.fitted},
         }
 
 

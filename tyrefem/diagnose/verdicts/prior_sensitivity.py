@@ -16,6 +16,7 @@ from tyrefem.diagnose.beside.robustness import Robustness, UnderDiscrepancy
 from tyrefem.diagnose.data.residuals import Residuals
 from tyrefem.diagnose.fitting.fits import FittedSet, linear_about
 from tyrefem.diagnose.inference.evidence import posterior
+from tyrefem.diagnose.numbers import percent
 from tyrefem.diagnose.unknowns.candidates import Members
 from tyrefem.diagnose.unknowns.unknown import Unknown
 from tyrefem.diagnose.verdicts.partly import beside_discrepancies
@@ -137,7 +138,7 @@ def change_words(change: PriorChange) -> str:
     what = "its probability before the data" if change.prior == PROBABILITY else "its usual size"
     named = change.verdict in (IDENTIFIED, PARTLY)
     role = "" if named else "most probable: "
-    return f"with {size} {what}, {change.verdict} ({role}{change.best}, {100 * change.share:.0f} %)"
+    return f"with {size} {what}, {change.verdict} ({role}{change.best}, {percent(change.share)})"
 
 
 def evidence_change(fit_unknowns: Sequence[Unknown], J: Array, data: Array, changed: Mapping[Unknown, float]) -> float:

@@ -97,12 +97,13 @@ class Amplification(Brief):
 
     Parameters
     ----------
-    study : the study. pressure : Pa. load : N.
+    study : the study. pressure : Pa. temperature : degC of tan delta. load : N.
     rises : in order of speed. refused : the first speed without a solution, m/s, and why; None: all have one.
     """
 
     study: StudyData
     pressure: float
+    temperature: float
     load: float
     rises: tuple[Rise, ...]
     refused: tuple[float, str] | None
@@ -125,6 +126,7 @@ class Amplification(Brief):
         onset, refused = self.onset, self.refused
         return {
             "pressure_Pa": self.pressure,
+            "temperature_degC": self.temperature,
             "load_N": self.load,
             "rises": self.rows(),
             "refused_m_s": refused and refused[0],
@@ -139,13 +141,15 @@ class Amplification(Brief):
         return [
             {
                 "pressure_Pa": self.pressure,
+                "temperature_degC": self.temperature,
                 "load_N": self.load,
                 "speed_m_s": rise.speed,
                 "rolling_resistance_N": rise.resistance,
                 "loss_factor": rise.loss,
                 "strain_factor": rise.strain,
                 "standing_wave_factor": None if self.onset is None else float(self.onset.factor(np.array(rise.speed))),
-                "limited_by_loss_only": rise.limited,
+                "limited_by_loss_only": bool(rise.limited),
+                "limited_because": rise.limited,
             }
             for rise in self.rises
         ]
@@ -204,7 +208,7 @@ def amplification(
         more = np.linspace(rises[-1].speed, refused[0], MORE + 2)[1:-1].tolist()
         others, earlier = _rises(turning, slow, more, pressing, warm)
         rises, refused = rises + others, earlier or refused
-    return Amplification(study, slow.tyre.pressure, slow.footprint.load, tuple(rises), refused)
+    return Amplification(study, slow.tyre.pressure, warm, slow.footprint.load, tuple(rises), refused)
 
 
 def _rises(

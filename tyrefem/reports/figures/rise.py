@@ -19,9 +19,11 @@ def rise_figure(rises: Sequence[Amplification]) -> Figure:
     """Draw heat and strain over those without inertia, and the effect `standing-wave` that comes nearest."""
     drawn = figure(7.2, 3.8 + TITLE)
     axes = add_axes(drawn, 0.8, 0.6, 6.0, 3.0)
+    several = len({amplification.temperature for amplification in rises}) > 1
     for amplification, colour in zip(rises, PALETTE * (1 + len(rises) // len(PALETTE)), strict=False):
         speeds = np.array([rise.speed for rise in amplification.rises])
         label = f"{amplification.pressure / 1e3:.0f} kPa"
+        label += f", {amplification.temperature:.4g} °C" if several else ""
         for name, style in (("loss", "o-"), ("strain", "x:")):
             values = [getattr(rise, name) for rise in amplification.rises]
             kind = "heat of a revolution" if name == "loss" else "strain amplitude"

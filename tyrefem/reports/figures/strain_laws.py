@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -34,6 +35,8 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 #: Share of the section's area that the colour scale spans; higher values have the last colour.
 SPANNED = 0.96
+#: Width of a letter of the parts' labels, inches, and their slope, degrees, where they do not fit side by side.
+LETTER, SLOPE = 0.07, 60
 
 
 def strain_laws_figure(comparison: LawComparison) -> Figure:
@@ -48,10 +51,15 @@ def strain_laws_figure(comparison: LawComparison) -> Figure:
     tall = 3.4
     wide = max(tall * (right - left) / (high - low), 2.3)
     width = 0.75 + len(maps) * (wide + 0.55) + 0.8
-    drawn = figure(width, tall + 2.95 + TITLE)
+    labels = [short(part.name if part.name == part.title else f"{part.name}: {part.title}", 28)
+              for part in comparison.parts]  # fmt: skip
+    longest = LETTER * max(map(len, labels))
+    sloping = longest > (width - 0.95) / len(labels)
+    deep = longest * math.sin(math.radians(SLOPE)) if sloping else 0.0
+    drawn = figure(width, tall + 2.95 + deep + TITLE)
     image: Any = None
     for number, (outcome, law_map) in enumerate(zip(comparison.outcomes, maps, strict=True)):
-        axes = add_axes(drawn, 0.75 + number * (wide + 0.55), 2.65, wide, tall)
+        axes = add_axes(drawn, 0.75 + number * (wide + 0.55), 2.65 + deep, wide, tall)
         for points, corners, values in law_map:
             image = axes.tripcolor(
                 *millimetres(points.T), corners, values / factor, shading="gouraud", cmap=ENERGY_MAP, vmin=0.0,
@@ -65,11 +73,17 @@ def strain_laws_figure(comparison: LawComparison) -> Figure:
         axes.set_title(
             f"{strain_laws()[outcome.law].title}, D = {outcome.deflection * 1e3:.1f} mm", fontsize=FONT, loc="left"
         )
-    bar_axes = add_axes(drawn, width - 0.85, 2.65, 0.16, tall)
+    bar_axes = add_axes(drawn, width - 0.85, 2.65 + deep, 0.16, tall)
     bar = drawn.colorbar(image, cax=bar_axes, extend="max" if peak > 1.001 * top else "neither")
     bar.set_label(f"U [{unit}], peak {peak / factor:{digits(peak / factor)}}", fontsize=FONT)
     bar_axes.tick_params(labelsize=FONT, colors=INK)
-    _bars(add_axes(drawn, 0.75, 0.4, width - 0.95, 1.4), comparison)
+    bars = add_axes(drawn, 0.75, 0.4 + deep, width - 0.95, 1.4)
+    _bars(bars, comparison)
+    bars.set_xticks(range(len(labels)), labels)
+    if sloping:
+        bars.tick_params(axis="x", labelrotation=SLOPE)
+        for label in bars.get_xticklabels():
+            label.set(ha="right", va="top", rotation_mode="anchor")
     case = comparison.case
     title(
         drawn, f"{comparison.study.name}: strain energy by strain law",
@@ -121,10 +135,6 @@ def _bars(axes: Axes, comparison: LawComparison) -> None:
         if not np.allclose(heating, energies):
             words = f"U that heats, all harmonics: {sum(heating):{digits(sum(heating))}} J"
             axes.bar(at, heating, 0.9 * step, fill=False, ec=INK, ls=":", lw=1.1, label=words)
-    labels = [part.name if part.name == part.title else f"{part.name}: {part.title}" for part in comparison.parts]
-    axes.set_xticks(places, [short(label, 28) for label in labels])
-    if len(names) > 6:
-        axes.tick_params(axis="x", rotation=25)
     axes.set_ylabel("energy [J]", fontsize=FONT)
     tidy(axes)
     axes.legend(
