@@ -117,11 +117,11 @@ def tangents(
         s = np.zeros((ops.size + reservoirs.shape[1], len(perturbed)))
         for number, perturbation in enumerate(perturbed):
             initial = values[0, 0] if perturbation.initial is None else perturbation.initial
-            own = [each.initial for each in perturbation.problem.reservoirs.values()]
+            given = [each.initial for each in perturbation.problem.reservoirs.values()]
             known = [each.initial for each in base.reservoirs.values()]
             starts = [
                 initial if new is None and old is None else reservoirs[0, k] if new is None else new
-                for k, (new, old) in enumerate(zip(own, known, strict=True))
+                for k, (new, old) in enumerate(zip(given, known, strict=True))
             ]
             s[: ops.size, number] = (initial - values[0, 0]) / perturbation.step
             s[ops.size :, number] = (np.array(starts, dtype=float) - reservoirs[0]) / perturbation.step

@@ -68,8 +68,8 @@ class Duty:
         ends = np.append(starts[1:], result.tyre.schedule.drive.end)
         # Every phase has its own begin and end: the time between two phases stands twice, an interval of no length.
         inside = [(times > start - 1e-9) & (times < end + 1e-9) for start, end in zip(starts, ends, strict=True)]
-        last = np.concatenate([np.full(int(own.sum()), np.flatnonzero(own)[-1]) for own in inside])
-        repeated = np.concatenate([times[own] for own in inside])
+        last = np.concatenate([np.full(int(part.sum()), np.flatnonzero(part)[-1]) for part in inside])
+        repeated = np.concatenate([times[part] for part in inside])
         return cls(solved(result.tyre.schedule), repeated, lambda places: np.asarray(result.at(places))[last])
 
     @classmethod
