@@ -22,7 +22,7 @@ from tyrefem.reduced.surrogate import SurrogateCertificate
 from tyrefem.reports import sweep_answer_figures as answer_pictures  # noqa: F401  registers its pictures
 from tyrefem.reports.sweep_figures import figures
 from tyrefem.reports.sweep_files import computation_sentence
-from tyrefem.sweep.envelope import Envelope, checked_pairs, envelope
+from tyrefem.sweep.envelope import Envelope, SpeedSearch, _speed_words, checked_pairs, envelope
 from tyrefem.sweep.evaluation import Evaluator
 from tyrefem.sweep.optimum import Optimum, optimum
 from tyrefem.sweep.pareto import ParetoFront, front, undominated
@@ -419,15 +419,15 @@ def test_the_envelope_says_where_no_speed_or_every_speed_is_safe(tyre: Study) ->
     assert np.isnan(answer.rating["tkph"].iloc[0])
 
 
-def test_a_search_that_does_not_end_says_so_and_gives_a_safe_speed(
-    tyre: Study, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("tyrefem.sweep.envelope.ROUNDS", 2)
-    card = EnvelopeCard(below=120.0, loads=("5 kN",), pressures=("500 kPa",), slowest="1 m/s")
-    answer = envelope(tyre, card, scheduler=Formula(heated), reduced="never")
-    assert answer.table["speed_m_s"].tolist() == pytest.approx([1.0])
-    assert not answer.table["settled"].any()
-    assert answer.words[1] == "at 500 kPa: 4 km/h or more (not settled) with 5 kN."
+def test_a_search_that_does_not_end_says_so_and_gives_a_safe_speed() -> None:
+    search = SpeedSearch(1.0, 100.0, 120.0)
+    for _ in range(2):
+        search.record(Answered({"hottest_degC": 20.0 + 5.0 * search.next}), "hottest_degC")
+    assert search.bracketed
+    assert not search.settled
+    assert (search.speed, search.value) == (1.0, 25.0)
+    row = {"speed_m_s": search.speed, "at_limit": True, "settled": False, "failure": "", "load": "5 kN"}
+    assert _speed_words(row) == "4 km/h or more (not settled) with 5 kN"
 
 
 def test_a_heavier_tyre_must_go_slower_and_what_it_says_is_true(tyre: Study) -> None:
