@@ -20,6 +20,7 @@ from tyrefem.cache import Cache
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
 from tyrefem.plugins import Sent, receive, sent
+from tyrefem.sizes import completed_materials
 from tyrefem.variants.outcomes import Answered, Failed, Outcome
 
 if TYPE_CHECKING:
@@ -101,7 +102,8 @@ def bundle(study: StudyData) -> Bundle:
     files: dict[str, bytes] = {}
     near = study.folder
     loaded = [library.load("section", data["section"], near)[0]]
-    loaded += [library.load("material", reference, near)[0] for reference in data["materials"].values()]
+    materials = completed_materials(data["section"], data["materials"])
+    loaded += [library.load("material", reference, near)[0] for reference in materials.values()]
     cards = hashlib.sha256(json.dumps(loaded, sort_keys=True, default=str).encode()).hexdigest()
     data["section"] = _packed("section", data["section"], near, files)
     data["materials"] = {
