@@ -20,6 +20,7 @@ TABLES = {
         "time [s],crown-outer [degC]\n5000,25\n6000,30\n",
         "no fitted run has a reading within the simulated drive",
     ),
+    "only the start": ("time [s],crown-outer [degC]\n0,25\n", "run 'table' has readings at 0 s only"),
     "broken thermocouple": ("time [s],crown-outer [degC]\n0,25\n60,9999\n", "9999"),
 }
 

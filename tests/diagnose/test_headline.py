@@ -11,6 +11,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 from hidden import RUNS, Case
 from made_up import confounded, judged, unexplained
@@ -28,6 +29,7 @@ from tyrefem.diagnose.verdicts.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, PA
 from tyrefem.diagnose.words.headline import QUESTIONS, corrections, headline, label
 from tyrefem.diagnose.words.sentences import noise_words, verdict_words
 from tyrefem.diagnose.words.support import alone_words, support_words
+from tyrefem.measured import MeasuredRun
 from tyrefem.reports.diagnosis import page
 from tyrefem.reports.diagnosis_figures import pictures
 from tyrefem.reports.diagnosis_summary import (
@@ -108,6 +110,22 @@ def test_every_verdict_says_what_is_wrong_how_sure_and_what_to_do(kind: str, cas
     assert "%" in sure or "nats" in sure
     assert step.split()[0] in {"Check", "A", "Measure", "Nothing", "Exclude", "State"}
     assert d.to_dict()["headline"] == [wrong, sure, step]
+
+
+def test_readings_mostly_outside_the_drive_come_first(case: Case) -> None:
+    """Times in a wrong unit: half of a run cannot be compared, and no name says so."""
+    runs = []
+    for run in case.diagnosis.gap.runs:
+        columns = {each.sensor: each.measured for each in run.sensors}
+        times = run.sensors[0].times
+        runs.append(MeasuredRun(run.name, times * 10.0, pd.DataFrame(columns), channels=("torque [N*m]",)))
+    d = case.study.diagnose(runs, largest=1, looks=1, known=case.diagnosis.gap.responses)
+    wrong, _, step = headline(d)
+    assert wrong.startswith(f"ERROR: run '{runs[0].name}': ")
+    assert "measured times lie outside the simulated span 0 to" in wrong
+    assert step.startswith("Check the unit of the times")
+    assert "columns without temperatures are left out: torque [N*m]" in d.notes
+    assert "Columns without temperatures are left out: torque [N*m]" in page(d, {}, version="1")
 
 
 def test_identified_gives_the_effect_its_value_what_it_moves_and_the_held_out_runs(case: Case) -> None:

@@ -140,3 +140,34 @@ def test_a_stated_noise_above_that_of_the_data_does_not_disarm_the_misfit_test(c
     assert noise["from_data_K"] == pytest.approx(0.05, rel=0.1)
     assert noise["used_K"] == noise["from_data_K"]
     assert len(noise["series"]) == 9
+
+
+def rounded_runs(case: Case, step: float) -> list[MeasuredRun]:
+    """The study's own prediction read by a fast logger that rounds, with hardly any noise of its own."""
+    d, rng = case.diagnosis, np.random.default_rng(8)
+    runs = []
+    for number, run in enumerate(d.gap.runs):
+        columns, times = {}, np.arange(0.0, 160.0, 0.1)
+        for readings in run.sensors:
+            expected = np.interp(times, readings.block_times, d.before[number][run.parts()[readings.sensor]])
+            columns[readings.sensor] = np.round((expected + 0.02 * rng.normal(size=len(times))) / step) * step
+        runs.append(MeasuredRun(run.name, times, pd.DataFrame(columns)))
+    return runs
+
+
+def test_rounded_readings_of_a_fast_logger_do_not_condemn_a_right_model(case: Case) -> None:
+    """Forty readings of a block stick to the same step: their mean is no better than each of them."""
+    result = case.study.diagnose(rounded_runs(case, 1.0), largest=1, looks=1, known=case.diagnosis.gap.responses)
+    assert result.verdict == "no gap"
+    for run in result.gap.runs:
+        for readings in run.sensors:
+            assert readings.rounding == pytest.approx(1.0 / np.sqrt(12.0))
+            assert np.diag(readings.covariance).min() >= readings.rounding**2
+
+
+def test_readings_whose_noise_spreads_over_several_steps_have_no_shared_rounding() -> None:
+    times, rng = np.arange(0.0, 500.0), np.random.default_rng(4)
+    values = np.round(heated(times, 90.0) + 0.8 * rng.normal(size=len(times)))
+    (noise,) = noise_of([("crown", times, values)], [0.5])
+    assert noise.resolution == 1.0
+    assert noise.rounding == 0.0

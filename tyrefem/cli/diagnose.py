@@ -119,7 +119,7 @@ def diagnose(
             f"draft effect: {folder / EFFECTS / name}; judge it by: tyrefem diagnose STUDY --effects {folder / EFFECTS}"
         )
     for note in dict.fromkeys(note for look in diagnosis.looks for note in look.notes):
-        say(f"Note: {note}")
+        say(note if note.startswith("ERROR: ") else f"Note: {note}")
     say(f"results in {folder}; read {page}, run {folder / 'amended.toml'}")
 
 

@@ -13,6 +13,7 @@ from tyrefem.compare.comparison import ComparisonData, comparison_of
 from tyrefem.compare.experiment import ColumnNames, Experiment, Table, acting_in, driven, experiments
 from tyrefem.compare.history import histories
 from tyrefem.compare.interface import ResultLike, StudyLike, computed_of
+from tyrefem.compare.omitted import ERROR, columns_note, outside_note, outside_notes, within
 from tyrefem.compare.reduced_inputs import (
     DEFAULT,
     ReducedInputCertificate,
@@ -102,10 +103,10 @@ def compare(
         all_histories += of_experiment
         curves[experiment.name] = computed.readings
         first, last = computed.readings["time_s"].iloc[[0, -1]]
-        notes += _outside_note(experiment, first, last, outside)
+        notes += outside_note(experiment, first, last, outside)
     if not all_histories:
         raise InputError("no measured time is within the simulated span: " + "; ".join(notes))
-    notes += [*model_notes, *_other_columns_note(planned), *_uncertainty_notes(study, planned, judged.inputs)]
+    notes += [*model_notes, *columns_note(planned), *_uncertainty_notes(study, planned, judged.inputs)]
     regions = {number.key: number.regions for number in getattr(study, "uncertain_numbers", ())}
     comparison = comparison_of(
         study.name, all_histories, curves=curves, relative_sd=keys, regions=regions, notes=tuple(notes), k=judged.k,
@@ -272,31 +273,9 @@ def _model_notes(model: bool, certificate: ReducedInputCertificate | None, why: 
 
 def _check_times(study: StudyData, planned: Sequence[Experiment]) -> None:
     """Raises InputError before the simulations if all readings are outside the drives of their runs."""
-    notes: list[str] = []
-    for experiment in planned:
-        at_drive = study.with_drive(dict(experiment.drive)) if experiment.drive else study
-        times, end = experiment.run.times, at_drive.card.drive.end
-        outside = int(np.sum((times < 0.0) | (times > end * (1 + 1e-9))))
-        if outside < len(times):
-            return
-        notes += _outside_note(experiment, 0.0, end, outside)
-    raise InputError("no measured time is within the simulated span: " + "; ".join(notes))
-
-
-def _outside_note(experiment: Experiment, first: float, last: float, outside: int) -> list[str]:
-    if not outside:
-        return []
-    total = len(experiment.run.times)
-    level = "ERROR" if 2 * outside > total else "Note"
-    return [
-        f"{level}: run '{experiment.name}': {outside} of {total} measured times lie outside the simulated span "
-        f"{first:g} to {last:g} s and are not compared"
-    ]
-
-
-def _other_columns_note(planned: Sequence[Experiment]) -> list[str]:
-    channels = dict.fromkeys(heading for experiment in planned for heading in experiment.run.channels)
-    return [f"Note: columns without temperatures are left out: {', '.join(channels)}"] if channels else []
+    if not any(within(study, experiment).any() for experiment in planned):
+        notes = "; ".join(outside_notes(study, planned)).replace(ERROR, "")
+        raise InputError(f"no measured time is within the simulated span: {notes}")
 
 
 def _uncertainty_notes(study: StudyLike, planned: Sequence[Experiment], inputs: bool) -> list[str]:

@@ -11,6 +11,7 @@ from typing import Any, Unpack
 
 from tyrefem.brief import Brief
 from tyrefem.compare.experiment import ColumnNames, Table, experiments
+from tyrefem.compare.omitted import ERROR, columns_note, outside_notes
 from tyrefem.diagnose.amend import Change, amended, changes
 from tyrefem.diagnose.beside.best_fit import fit_beside, not_asked_for
 from tyrefem.diagnose.beside.free_heat import free_heat
@@ -112,13 +113,13 @@ def diagnose(study: StudyData, table: Table | None = None, **options: Unpack[Dia
     """
     columns, method, work = grouped(options)
     NEEDS.check(study, table)
+    runs, _ = _measured_drives(study, table, columns, method.settings)
     conformal = None
     if method.calibration is not None:
-        runs = _measured_drives(study, table, columns, method.settings)
         sensors = dict.fromkeys(name for run in runs for name in run.parts())
         conformal = read_calibration(method.calibration, study.name, list(sensors), [run.name for run in runs])
-    driven = [study.with_drive(dict(run.drive)) for run in _measured_drives(study, table, columns, method.settings)]
-    wave = computed_wave(driven or [study], method.candidates(study), work.tick)
+    driven = [study.with_drive(dict(run.drive)) for run in runs]
+    wave = computed_wave(driven, method.candidates(study), work.tick)
     if wave.onset is not None:
         method = replace(method, candidates=WithWave(method.candidates, wave))
     looks: list[DiagnosisData] = []
@@ -186,9 +187,9 @@ def _look(
     """
     began = time.perf_counter()
     settings = method.settings
-    runs = _measured_drives(study, table, columns, settings)
-    in_all_runs, notes = possible(study, method.candidates(study))
-    notes = (*notes, *beside_rolling(study, in_all_runs))
+    runs, notes = _measured_drives(study, table, columns, settings)
+    in_all_runs, impossible = possible(study, method.candidates(study))
+    notes = (*notes, *impossible, *beside_rolling(study, in_all_runs))
     in_one_run = _in_single_runs(study, in_all_runs, runs, settings)
     candidates = (*in_all_runs, *in_one_run)
     method.strategy.check(study, candidates, settings)
@@ -256,15 +257,21 @@ def _look(
 
 def _measured_drives(
     study: StudyData, table: Table | None, columns: ColumnNames, settings: DiagnosisSettings
-) -> tuple[MeasuredDrive, ...]:
-    """The measured runs as blocks of readings within the simulated drives."""
+) -> tuple[tuple[MeasuredDrive, ...], tuple[str, ...]]:
+    """The measured runs as blocks of readings within the simulated drives, and notes on what is left out."""
     planned = experiments(study, table, ignore=columns.ignore, rename=columns.rename)
     NEEDS.check_fitted(study, [experiment.hold_out for experiment in planned])
     runs = tuple(run for run in (measured_drive(experiment, study, settings) for experiment in planned) if run.sensors)
-    if all(run.hold_out for run in runs):
-        message = "no fitted run has a reading within the simulated drive"
+    fitted = [run for run in runs if not run.hold_out]
+    if not fitted:
+        outside = "; ".join(outside_notes(study, planned)).replace(ERROR, "")
+        message = f"no fitted run has a reading within the simulated drive: {outside}"
         raise InputError(message, field="measured", file=study.file)
-    return with_noise_of_data(runs, settings)
+    for run in fitted:
+        if run.last <= 0:
+            raise InputError(f"run '{run.name}' has readings at 0 s only", field="measured", file=study.file)
+    notes = (*outside_notes(study, planned), *columns_note(planned))
+    return with_noise_of_data(runs, settings), tuple(note.removeprefix("Note: ") for note in notes)
 
 
 def _in_single_runs(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
@@ -32,7 +32,8 @@ class ReadingNoise:
     ----------
     stated : by the study. from_data : by the scatter of the readings; NaN: too few readings. used : by the diagnosis.
     correlated : neighbouring readings share noise, so the scatter shows only a part of it.
-    resolution : step of rounded readings; 0: not rounded.
+    resolution : step of rounded readings; 0: not rounded. rounding : error that neighbours share which stick to a step,
+        step/sqrt(12); 0: they do not stick.
     """
 
     stated: float
@@ -40,6 +41,7 @@ class ReadingNoise:
     used: float
     correlated: bool = False
     resolution: float = 0.0
+    rounding: float = 0.0
 
     @property
     def differs(self) -> bool:
@@ -82,7 +84,8 @@ def noise_of(
         # Readings that stick to their steps are off by up to half a step, many neighbours alike.
         sticks = size < step / 2
         size = step / 2 if sticks else size
-        result.append(_judged(given, size, estimate.sd, correlated and not sticks, step, settings))
+        noise = _judged(given, size, estimate.sd, correlated and not sticks, step, settings)
+        result.append(replace(noise, rounding=step / np.sqrt(12.0)) if sticks else noise)
     return result
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.compare.experiment import Experiment
+from tyrefem.compare.omitted import within
 from tyrefem.diagnose.data.noise import ReadingNoise, noise_of
 from tyrefem.diagnose.forward.sampling import DriveSampling, SensorSampling
 from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
@@ -30,7 +31,7 @@ class MeasuredSensor(SensorSampling):
     @property
     def sampling(self) -> SensorSampling:
         """The sampling without the readings."""
-        return SensorSampling(self.sensor, self.times, self.noise, self.discrepancy, self.correlation_time, self.blocks)
+        return SensorSampling(**{each.name: getattr(self, each.name) for each in fields(SensorSampling)})
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,6 +39,11 @@ class MeasuredDrive(DriveSampling):
     """A measured run: its drive, and the readings of every sensor."""
 
     sensors: tuple[MeasuredSensor, ...]
+
+    @property
+    def last(self) -> float:
+        """Time of the last reading, s."""
+        return max(float(readings.times[-1]) for readings in self.sensors)
 
     @cached_property
     def measured(self) -> Array:
@@ -64,12 +70,11 @@ def drive_of_means(sampling: DriveSampling, means: Array) -> MeasuredDrive:
 def measured_drive(experiment: Experiment, study: StudyData, settings: DiagnosisSettings = DEFAULT) -> MeasuredDrive:
     """The measured run of an experiment with the stated noise; only readings within the simulated drive."""
     choice, run = study.card.diagnosis, experiment.run
-    driven = study.with_drive(dict(experiment.drive)) if experiment.drive else study
-    end = driven.card.drive.end
+    in_drive = within(study, experiment)
     sensors = []
     for sensor in run.sensors:
         values = run.temperatures[sensor].to_numpy(dtype=float)
-        used = np.isfinite(values) & (run.times >= -1e-9) & (run.times <= end * (1 + 1e-9))
+        used = np.isfinite(values) & in_drive
         if not used.any():
             continue
         card = study.sensors.get(sensor)
@@ -91,6 +96,6 @@ def with_noise_of_data(
 
     def judged(readings: MeasuredSensor) -> MeasuredSensor:
         noise = next(estimates)
-        return replace(readings, noise=noise.used, origin=noise)
+        return replace(readings, noise=noise.used, rounding=noise.rounding, origin=noise)
 
     return tuple(replace(run, sensors=tuple(judged(readings) for readings in run.sensors)) for run in runs)

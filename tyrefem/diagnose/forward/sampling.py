@@ -21,7 +21,8 @@ class SensorSampling(Brief):
 
     Neighbouring readings are averaged into at most ``blocks`` blocks. The noise of a block of m readings is
     noise/sqrt(m). The discrepancy of a correct model is correlated over time:
-    C = noise^2/m + d^2 exp(-|t - t'|/tau), with the ``discrepancy`` d (K) and the ``correlation_time`` tau (s).
+    C = noise^2/m + r^2 + d^2 exp(-|t - t'|/tau), with the ``discrepancy`` d (K) and the ``correlation_time`` tau (s).
+    r is the ``rounding``: readings that stick to the steps of a logger share their error, K; else 0.
     """
 
     sensor: str
@@ -30,6 +31,7 @@ class SensorSampling(Brief):
     discrepancy: float
     correlation_time: float
     blocks: int = DEFAULT.blocks
+    rounding: float = 0.0
 
     @cached_property
     def starts(self) -> NDArray[np.intp]:
@@ -64,7 +66,8 @@ class SensorSampling(Brief):
     def covariance(self) -> Array:
         """(n_blocks, n_blocks) K2."""
         apart = np.abs(self.block_times[:, None] - self.block_times[None, :])
-        return np.diag(self.noise**2 / self.sizes) + self.discrepancy**2 * np.exp(-apart / self.correlation_time)
+        independent = np.diag(self.noise**2 / self.sizes + self.rounding**2)
+        return independent + self.discrepancy**2 * np.exp(-apart / self.correlation_time)
 
     @cached_property
     def _root(self) -> Array:

@@ -166,8 +166,7 @@ def _grid(residuals: Residuals, count: int) -> CourseGrid:
         run, drive = residuals.runs[number], residuals.driven(number).card.drive
         # In whole hundredths of the drive: diagnoses of one layout then have the same knots and share responses.
         hundredth = drive.end / 100
-        read = max(float(readings.times[-1]) for readings in run.sensors)
-        last = min(math.ceil(read / hundredth - 1e-9) * hundredth, drive.end)
+        last = min(math.ceil(run.last / hundredth - 1e-9) * hundredth, drive.end)
         names.append(run.name)
         knots.append(np.linspace(0.0, last, count))
         drives.append(drive)

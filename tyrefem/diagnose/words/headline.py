@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from tyrefem.brief import Brief
+from tyrefem.compare.omitted import ERROR
 from tyrefem.diagnose.beside.discrepancy import ENERGY
 from tyrefem.diagnose.fitting.materiality import Movement, largest_change
 from tyrefem.diagnose.fitting.pulls import Pull, improbable_pulls
@@ -54,6 +55,16 @@ LIKELY = 0.5
 
 def headline(d: DiagnosisData) -> tuple[str, str, str]:
     """What is wrong, how sure that is, and what to do next: a sentence each, for every verdict."""
+    wrong, sure, next_step = _of_verdict(d)
+    errors = [f"{note}." for note in dict.fromkeys(d.notes) if note.startswith(ERROR)]
+    if errors:
+        times = "Check the unit of the times, and the drive; then diagnose again. "
+        return " ".join((*errors, wrong)), sure, f"{times}Else: {next_step[0].lower()}{next_step[1:]}"
+    return wrong, sure, next_step
+
+
+def _of_verdict(d: DiagnosisData) -> tuple[str, str, str]:
+    """The three sentences of a verdict, after another strain law if the data prefer it."""
     wrong, sure, next_step = {
         IDENTIFIED: _identified,
         CONFOUNDED: _confounded,

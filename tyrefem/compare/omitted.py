@@ -1,0 +1,57 @@
+"""What nothing is compared with: readings outside the simulated span, and columns without temperatures."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tyrefem.compare.experiment import Experiment
+from tyrefem.inputs.study import StudyData
+
+#: How a note begins that stands in the summary, too.
+ERROR = "ERROR: "
+
+
+def outside_note(experiment: Experiment, first: float, last: float, outside: int) -> list[str]:
+    """A note on readings outside the simulated span; an error if they are more than half of the run."""
+    if not outside:
+        return []
+    total = len(experiment.run.times)
+    level = ERROR if 2 * outside > total else "Note: "
+    return [
+        f"{level}run '{experiment.name}': {outside} of {total} measured times lie outside the simulated span "
+        f"{first:g} to {last:g} s and are not compared"
+    ]
+
+
+def within(study: StudyData, experiment: Experiment) -> NDArray[np.bool_]:
+    """Which readings are within the drive of their run."""
+    return inside(experiment, _end(study, experiment))
+
+
+def inside(experiment: Experiment, end: float) -> NDArray[np.bool_]:
+    """Which readings are within a drive of so many seconds."""
+    times = experiment.run.times
+    return (times >= -1e-9) & (times <= end * (1 + 1e-9))
+
+
+def outside_notes(study: StudyData, planned: Sequence[Experiment]) -> list[str]:
+    """The notes on readings outside the drives of their runs, before any simulation."""
+    notes = []
+    for experiment in planned:
+        end = _end(study, experiment)
+        notes += outside_note(experiment, 0.0, end, int(np.sum(~inside(experiment, end))))
+    return notes
+
+
+def _end(study: StudyData, experiment: Experiment) -> float:
+    """Last time of the drive of a run, s."""
+    return (study.with_drive(dict(experiment.drive)) if experiment.drive else study).card.drive.end
+
+
+def columns_note(planned: Sequence[Experiment]) -> list[str]:
+    """A note on columns without temperatures."""
+    channels = dict.fromkeys(heading for experiment in planned for heading in experiment.run.channels)
+    return [f"Note: columns without temperatures are left out: {', '.join(channels)}"] if channels else []
