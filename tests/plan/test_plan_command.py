@@ -124,6 +124,8 @@ def test_responses_at_hand_give_the_same_plan(owner: Path) -> None:
     assert gains[0] == pytest.approx(gains[1], rel=1e-6)
     with pytest.raises(tf.InputError, match=r"belong to another study or to other sensors: .* is not there"):
         study.plan(known=[response.of(unknowns[:3]) for response in known])
+    with pytest.raises(tf.InputError, match="ignore: is for a table of readings"):
+        study.plan(ignore=["room"])
 
 
 def test_a_table_is_diagnosed_first(owner: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeGuard
 
 from tyrefem.diagnose.diagnosis import DiagnosisData
 from tyrefem.diagnose.forward.evaluations import ProgressStore
@@ -17,6 +17,7 @@ from tyrefem.diagnose.options import SimulationWork
 from tyrefem.diagnose.settings import DiagnosisSettings
 from tyrefem.diagnose.unknowns.candidates import Members
 from tyrefem.diagnose.workflow import diagnose
+from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
 from tyrefem.plan.batch import Search, greedy_batch
 from tyrefem.plan.beliefs import Beliefs, diagnosed_beliefs, prior_beliefs, stored_beliefs
@@ -89,15 +90,22 @@ def _beliefs(
     settings: DiagnosisSettings,
     options: dict[str, Any],
 ) -> Beliefs:
+    if options and (after is None or isinstance(after, DiagnosisData) or _is_folder(after)):
+        raise InputError("is for a table of readings; none is given", field=next(iter(options)))
     if after is None:
         return prior_beliefs(study)
     if isinstance(after, DiagnosisData):
         return diagnosed_beliefs(after)
-    if isinstance(after, str | os.PathLike) and Path(after).is_dir():
+    if _is_folder(after):
         return stored_beliefs(study, Path(after))
     work = {"workers": workers, "progress": progress, "store": store, "settings": settings}
     diagnosis = diagnose(study, after, **work | options)
     return diagnosed_beliefs(diagnosis)
+
+
+def _is_folder(after: Any) -> TypeGuard[str | os.PathLike[str]]:
+    """Whether ``after`` is the folder of a diagnosis."""
+    return isinstance(after, str | os.PathLike) and Path(after).is_dir()
 
 
 def _steps(

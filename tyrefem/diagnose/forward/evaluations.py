@@ -69,7 +69,7 @@ def key_of(model: ForwardModel) -> str:
 
 
 def _times(sampling: SensorSampling) -> list[Any]:
-    noise = sampling.noise, sampling.discrepancy, sampling.correlation_time
+    noise = sampling.noise, sampling.rounding, sampling.discrepancy, sampling.correlation_time
     return [sampling.sensor, sampling.times.tolist(), *noise]
 
 
