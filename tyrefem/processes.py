@@ -7,19 +7,25 @@ import signal
 import sys
 import threading
 from collections.abc import Callable, Iterator
-from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures import BrokenExecutor, ProcessPoolExecutor
 from contextlib import contextmanager, suppress
-from multiprocessing import active_children, parent_process, resource_tracker
+from multiprocessing import active_children, current_process, parent_process, resource_tracker
 from multiprocessing.context import SpawnContext, SpawnProcess
 from typing import Any
+from weakref import WeakSet
 
 from threadpoolctl import threadpool_limits
 
+from tyrefem.errors import InputError
 from tyrefem.interruption import interruption_delayed
 from tyrefem.threads import VARIABLES
 
 #: Python's option that hides the tracker's warning.
 LEFT_BEHIND = "ignore:resource_tracker:UserWarning"
+
+
+#: Exit code of a worker that would start workers while it imports its parent's script.
+UNGUARDED = 78
 
 
 class _ProcessWithoutCtrlC(SpawnProcess):
@@ -29,6 +35,11 @@ class _ProcessWithoutCtrlC(SpawnProcess):
         """Start it with the signal blocked; the process inherits this."""
         with _blocked():
             super().start()
+        _STARTED.add(self)
+
+
+#: Workers of this process.
+_STARTED: WeakSet[_ProcessWithoutCtrlC] = WeakSet()
 
 
 class _Context(SpawnContext):
@@ -42,23 +53,33 @@ def processes(count: int, begin: Callable[..., None] | None = None, *given: Any)
     Only the parent receives Ctrl-C. If the parent leaves the block by an exception, workers are terminated, even during
     a simulation. If the parent is killed, they end themselves.
 
+    Raises
+    ------
+    InputError : a worker, which imports the script that started it, came to the same place of the script.
+
     >>> with processes(1) as pool:
     ...     pool.submit(abs, -3).result()
     3
     """
+    if getattr(current_process(), "_inheriting", False):
+        os._exit(UNGUARDED)
     before = set(active_children())
     _start_tracker()
     pool = ProcessPoolExecutor(count, _Context(), _begin, (begin, given))
     try:
         yield pool
         pool.shutdown()
-    except BaseException:
+    except BaseException as error:
+        unguarded = isinstance(error, BrokenExecutor) and any(each.exitcode == UNGUARDED for each in _STARTED)
         with interruption_delayed():
             # Running simulations are no longer needed. Waiting tasks are not cancelled: Python 3.11's pool
             # prints a traceback for cancelled tasks of ended processes.
             pool.shutdown(wait=False)
             for worker in set(active_children()) - before:
                 worker.terminate()
+        if unguarded:
+            message = 'a script whose work has several processes needs it under: if __name__ == "__main__":'
+            raise InputError(message) from None
         raise
 
 
