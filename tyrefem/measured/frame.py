@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
 #: Name of the frame in errors. Line numbers are those of the frame written as CSV.
 PLACE = Path("DataFrame (line 1: its column names)")
+#: Timestamps as they are written, with the offset from UTC, if any: clocks that are put back repeat an hour.
+STAMP = "%Y-%m-%dT%H:%M:%S.%f%z"
 
 
 def is_frame(table: object) -> bool:
@@ -40,7 +42,7 @@ def frame_table(
     with tempfile.TemporaryDirectory(prefix="tyrefem-") as folder:
         # It is read like a file, so that a frame and a file follow the same rules.
         file = Path(folder) / "measured.csv"
-        _flat(frame).to_csv(file, index=False, lineterminator="\n", date_format="%Y-%m-%dT%H:%M:%S.%f")
+        _flat(frame).to_csv(file, index=False, lineterminator="\n", date_format=STAMP)
         try:
             table = read(file, rename=rename, ignore=ignore)
         except InputError as error:
@@ -52,11 +54,18 @@ def _flat(frame: pd.DataFrame) -> pd.DataFrame:
     """The frame with time or run from its index as a column; a result's `readings` get their units."""
     if frame.columns.nlevels > 1:
         raise InputError("its columns have several levels; wanted: one name each, like 'crown [degC]'", file=PLACE)
-    levels = [name for name in frame.index.names if isinstance(name, str) and (is_time(name) or name.lower() == "run")]
-    flat = frame.reset_index(levels) if levels else frame
+    levels = {name: level for level, name in enumerate(frame.index.names) if _is_needed(name)}
+    # `set_index(..., drop=False)` keeps the column beside the index.
+    missing = [level for name, level in levels.items() if name not in frame.columns]
+    flat = frame.reset_index(missing) if missing else frame
     if "time_s" not in flat.columns:
         return flat
     return flat.rename(columns=lambda name: "time [s]" if name == "time_s" else _in_degC(str(name)))
+
+
+def _is_needed(name: object) -> bool:
+    """Whether a level of the index is a time or the run."""
+    return isinstance(name, str) and (is_time(name) or name == "time_s" or name.lower() == "run")
 
 
 def _in_degC(name: str) -> str:
