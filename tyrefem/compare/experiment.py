@@ -14,7 +14,8 @@ from tyrefem.inputs.study_effects import check_runs
 from tyrefem.measured import MeasuredRun
 from tyrefem.measured.columns import parts
 from tyrefem.measured.frame import frame_table, is_frame
-from tyrefem.measured.table import MeasuredTable, missing_columns_error, read
+from tyrefem.measured.names import ColumnNames, missing_columns_error
+from tyrefem.measured.table import MeasuredTable, read
 
 #: Temperatures that are computed with the sensors and measured like them, but at no place in the rubber.
 OUTSIDE_THE_RUBBER = ("contained-air", "rim")
@@ -66,7 +67,7 @@ def experiments(
     InputError : no run; an effect is in a run that the study's tables do not have; an entry names a run that is not in
         the table; a column is no sensor of the study; no table has a column that is to be renamed or ignored.
     """
-    given = ColumnNames(dict(rename or {}), tuple(ignore))
+    given = ColumnNames.of(ignore=ignore, rename=rename)
     entries = list(study.measured) if table is None else []
     runs: list[MeasuredRun] = []
     columns: list[str] = []
@@ -140,21 +141,6 @@ def _no_table(table: object) -> InputError:
         f"a value of type {type(table).__name__} is no measured table; allowed: a CSV file's path, a pandas DataFrame "
         "with 'time [s]' and sensors like 'crown [degC]', a MeasuredRun, or a list of these"
     )
-
-
-@dataclass(frozen=True)
-class ColumnNames:
-    """Names for the columns of all tables: ``rename``, column -> sensor, and columns to ``ignore``."""
-
-    rename: Mapping[str, str]
-    ignore: tuple[str, ...]
-
-    def require(self, columns: Sequence[str]) -> None:
-        """Raises InputError for names that no table has."""
-        for names, purpose in ((self.rename, "to rename"), (self.ignore, "to ignore")):
-            missing = [name for name in names if name not in {*columns, *self.rename.values()}]
-            if missing:
-                raise missing_columns_error(missing, purpose, dict.fromkeys(parts(name)[0] for name in columns))
 
 
 def _table(entry: MeasuredEntryLike, given: ColumnNames, at_hand: dict[str, MeasuredTable]) -> MeasuredTable:

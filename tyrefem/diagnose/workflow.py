@@ -10,7 +10,7 @@ from functools import partial
 from typing import Any, Unpack
 
 from tyrefem.brief import Brief
-from tyrefem.compare.experiment import ColumnNames, Table, experiments
+from tyrefem.compare.experiment import Table, experiments
 from tyrefem.diagnose.amend import Change, amended, changes
 from tyrefem.diagnose.beside.best_fit import fit_beside, not_asked_for
 from tyrefem.diagnose.beside.free_heat import free_heat
@@ -72,6 +72,7 @@ from tyrefem.diagnose.verdicts.verdict import (
 )
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
+from tyrefem.measured.names import ColumnNames
 from tyrefem.requirements import Requirements
 from tyrefem.threads import one_thread
 

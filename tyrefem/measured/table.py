@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.errors import InputError, nearest, quoted
+from tyrefem.errors import InputError
 from tyrefem.measured.columns import (
     TIME_UNITS,
     Heading,
@@ -23,6 +23,7 @@ from tyrefem.measured.columns import (
     time_unit,
 )
 from tyrefem.measured.lines import Lines, split
+from tyrefem.measured.names import ColumnNames, missing_columns_error
 from tyrefem.measured.run import MeasuredRun
 from tyrefem.measured.timestamps import are_timestamps, microseconds
 
@@ -60,7 +61,8 @@ def read_table(
 
     Raises
     ------
-    InputError : unclear content, with file, line and column; an unknown column to rename.
+    InputError : unclear content, with file, line and column; an unknown column to rename; ``ignore`` or ``rename`` of
+        another form.
 
     >>> import tempfile
     >>> file = Path(tempfile.mkdtemp()) / "run-1.csv"
@@ -69,9 +71,9 @@ def read_table(
     >>> run.name, run.times.tolist(), run.temperatures["crown"].tolist()
     ('run-1', [0.0, 60.0, 120.0], [25.0, nan, 35.0])
     """
-    given = dict(rename or {})
-    table = read(path, time_offset=time_offset, rename=given, ignore=ignore)
-    missing = table.missing(given)
+    names = ColumnNames.of(ignore=ignore, rename=rename)
+    table = read(path, time_offset=time_offset, rename=names.rename, ignore=names.ignore)
+    missing = table.missing(names.rename)
     if missing:
         raise missing_columns_error(missing, "to rename", table.columns, table.file)
     return table.runs
@@ -127,16 +129,6 @@ def read(
         times.flags.writeable = False
         runs.append(MeasuredRun(name, times, pd.DataFrame(held), file, lines.comments, columns.channels))
     return MeasuredTable(file, tuple(runs), lines.heading)
-
-
-def missing_columns_error(
-    names: Iterable[str], purpose: str, columns: Iterable[str], file: Path | None = None
-) -> InputError:
-    """The error for missing columns: all of them, each with the nearest name."""
-    missing, known = list(names), list(columns)
-    if len(missing) == 1:
-        return InputError(f"no column '{missing[0]}' {purpose}{nearest(missing[0], known)}", file=file)
-    return InputError(f"no columns {quoted(missing, known)} {purpose}; allowed: {', '.join(known)}", file=file)
 
 
 @dataclass(frozen=True)
