@@ -93,6 +93,14 @@ def test_other_quantities_are_left_out_and_said_so(study: Study, tmp_path: Path)
         compare(study, file)
 
 
+@pytest.mark.parametrize("column", ["contained-air", "contained-air [kPa]"])
+def test_a_column_that_a_run_left_out_may_be_ignored(study: Study, column: str) -> None:
+    run = replace(measured_from(study, TIMES), channels=("contained-air [kPa]", "speed [km/h]"))
+    comparison = compare(study, run, ignore=[column])
+    assert set(comparison.table.sensor) == {"crown", "shoulder"}
+    assert [note for note in comparison.notes if "left out: " in note][0].endswith("left out: speed [km/h]")
+
+
 def test_a_text_is_one_column_to_ignore(study: Study, tmp_path: Path) -> None:
     file = logged(study, crown="crown", shoulder="room").write(tmp_path / "run-1.csv")
     assert set(compare(study, file, ignore="room").table.sensor) == {"crown"}

@@ -74,7 +74,7 @@ def experiments(
     for each in _listed(table):
         if isinstance(each, MeasuredRun):
             runs.append(each.renamed(given.rename))
-            columns += each.sensors
+            columns += [*each.sensors, *each.channels, *(parts(heading)[0] for heading in each.channels)]
             continue
         known = [entry for entry in study.measured if _is_file(each, entry.table)]
         entries += known
@@ -183,7 +183,9 @@ def _without_columns(experiment: Experiment, ignore: tuple[str, ...]) -> Experim
     kept = [sensor for sensor in experiment.run.sensors if sensor not in ignore]
     if not kept:
         raise InputError(f"run '{experiment.name}': every sensor is ignored", file=experiment.run.file)
-    return replace(experiment, run=replace(experiment.run, temperatures=experiment.run.temperatures[kept]))
+    channels = tuple(text for text in experiment.run.channels if not {text, parts(text)[0]} & set(ignore))
+    run = replace(experiment.run, temperatures=experiment.run.temperatures[kept], channels=channels)
+    return replace(experiment, run=run)
 
 
 def _check_sensors(runs: Sequence[MeasuredRun], study: StudyLike) -> None:
