@@ -98,7 +98,7 @@ def test_a_column_that_a_run_left_out_may_be_ignored(study: Study, column: str) 
     run = replace(measured_from(study, TIMES), channels=("contained-air [kPa]", "speed [km/h]"))
     comparison = compare(study, run, ignore=[column])
     assert set(comparison.table.sensor) == {"crown", "shoulder"}
-    assert [note for note in comparison.notes if "left out: " in note][0].endswith("left out: speed [km/h]")
+    assert next(note for note in comparison.notes if "left out: " in note).endswith("left out: speed [km/h]")
 
 
 def test_a_text_is_one_column_to_ignore(study: Study, tmp_path: Path) -> None:
