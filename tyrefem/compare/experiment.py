@@ -7,9 +7,10 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, cast
 
-from tyrefem.compare.interface import MeasuredEntryLike, StudyLike
+from tyrefem.compare.interface import MeasuredEntryLike, SensorLike, StudyLike
 from tyrefem.errors import InputError, nearest, quoted
 from tyrefem.inputs.study import StudyData
+from tyrefem.inputs.study_card import Sensor
 from tyrefem.inputs.study_effects import check_runs
 from tyrefem.measured import MeasuredRun
 from tyrefem.measured.columns import parts
@@ -19,6 +20,17 @@ from tyrefem.measured.table import MeasuredTable, read
 
 #: Temperatures that are computed with the sensors and measured like them, but at no place in the rubber.
 OUTSIDE_THE_RUBBER = ("contained-air", "rim")
+
+
+@dataclass(frozen=True)
+class SensorWithoutCard:
+    """Standard uncertainties of a reading outside the rubber: the defaults of a sensor's card, and no position."""
+
+    noise: float = Sensor.model_fields["noise"].default
+    accuracy: float = Sensor.model_fields["accuracy"].default
+    position_sd: float = 0.0
+
+
 #: A CSV file, a pandas DataFrame with the same columns, a run already read, or several of these.
 Table = Any
 
@@ -97,6 +109,11 @@ def experiments(
     if table is None and isinstance(study, StudyData):
         check_runs(study, [experiment.name for experiment in distinct])
     return distinct
+
+
+def sensor_of(study: StudyLike, name: str) -> SensorLike:
+    """Standard uncertainties of a sensor; those of contained air and rim, if the study gives them no card."""
+    return study.sensors.get(name, SensorWithoutCard())
 
 
 def driven(study: StudyLike, experiment: Experiment) -> StudyLike:

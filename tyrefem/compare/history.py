@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.compare.experiment import Experiment
+from tyrefem.compare.experiment import Experiment, sensor_of
 from tyrefem.compare.interface import PhaseLike, ResultLike, StudyLike
 from tyrefem.errors import InputError, nearest
 
@@ -92,8 +92,7 @@ def histories(
         used = inside & np.isfinite(readings)
         times = run.times[used]
         computed = at_times(result, sensor, times)
-        card = study.sensors.get(sensor)
-        noise = card.noise if experiment.noise is None and card is not None else experiment.noise
+        card = sensor_of(study, sensor)
         compared.append(
             SensorHistory(
                 run=run.name,
@@ -105,9 +104,9 @@ def histories(
                 phases=phase_names(times, result.phases),
                 gradient=_gradient(result, sensor, times),
                 changes={key: at_times(other, sensor, times) - computed for key, other in perturbed.items()},
-                noise=noise or 0.0,
-                accuracy=card.accuracy if card is not None else 0.0,
-                position_sd=card.position_sd if card is not None else 0.0,
+                noise=card.noise if experiment.noise is None else experiment.noise,
+                accuracy=card.accuracy,
+                position_sd=card.position_sd,
                 numerical=float(np.hypot(study.tolerance, study.numerical_sd)),
             )
         )

@@ -10,7 +10,7 @@ from typing import Any, TypedDict, Unpack
 import numpy as np
 
 from tyrefem.compare.comparison import ComparisonData, comparison_of
-from tyrefem.compare.experiment import Experiment, Table, acting_in, driven, experiments
+from tyrefem.compare.experiment import Experiment, Table, acting_in, driven, experiments, sensor_of
 from tyrefem.compare.history import histories
 from tyrefem.compare.interface import ResultLike, StudyLike, computed_of
 from tyrefem.compare.reduced_inputs import (
@@ -313,8 +313,7 @@ def _uncertainty_notes(study: StudyLike, planned: Sequence[Experiment], inputs: 
         sensor: None
         for experiment in planned
         for sensor in experiment.run.sensors
-        if not experiment.noise
-        and (experiment.noise is not None or not getattr(study.sensors.get(sensor), "noise", 0.0))
+        if not (sensor_of(study, sensor).noise if experiment.noise is None else experiment.noise)
     }
     if silent:
         notes.append(f"Note: no measurement noise is stated for {', '.join(silent)}")

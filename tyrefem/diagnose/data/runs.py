@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.compare.experiment import Experiment
+from tyrefem.compare.experiment import Experiment, sensor_of
 from tyrefem.diagnose.data.noise import ReadingNoise, noise_of
 from tyrefem.diagnose.forward.sampling import DriveSampling, SensorSampling
 from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
@@ -72,8 +72,7 @@ def measured_drive(experiment: Experiment, study: StudyData, settings: Diagnosis
         used = np.isfinite(values) & (run.times >= -1e-9) & (run.times <= end * (1 + 1e-9))
         if not used.any():
             continue
-        card = study.sensors.get(sensor)
-        stated = experiment.noise or (card.noise if card is not None else 0.5)
+        stated = experiment.noise or sensor_of(study, sensor).noise
         correlated = choice.discrepancy, choice.correlation_time
         times, measured = run.times[used], values[used]
         sensors.append(MeasuredSensor(sensor, times, stated, *correlated, settings.blocks, measured=measured))
