@@ -4,19 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from pathlib import Path
 from typing import Any, cast
 
-from tyrefem.compare.interface import MeasuredEntryLike, SensorLike, StudyLike
+from tyrefem.compare.interface import SensorLike, StudyLike
+from tyrefem.compare.records import Record, Table, records
 from tyrefem.errors import InputError, nearest, quoted
 from tyrefem.inputs.study import StudyData
 from tyrefem.inputs.study_card import Sensor
 from tyrefem.inputs.study_effects import check_runs
 from tyrefem.measured import MeasuredRun
 from tyrefem.measured.columns import parts
-from tyrefem.measured.frame import frame_table, is_frame
-from tyrefem.measured.names import ColumnNames, missing_columns_error
-from tyrefem.measured.table import MeasuredTable, read
+from tyrefem.measured.names import ColumnNames
 
 #: Temperatures that are computed with the sensors and measured like them, but at no place in the rubber.
 OUTSIDE_THE_RUBBER = ("contained-air", "rim")
@@ -31,10 +29,6 @@ class SensorWithoutCard:
     position_sd: float = 0.0
 
 
-#: A CSV file, a pandas DataFrame with the same columns, a run already read, or several of these.
-Table = Any
-
-
 @dataclass(frozen=True, eq=False)
 class Experiment:
     """A measured run and the data of its ``[[measured]]`` entry.
@@ -42,20 +36,46 @@ class Experiment:
     Parameters
     ----------
     run : the measured histories, on the clock of the simulation.
+    origin : the run's name in its table: effects that act in some runs only are stated with it.
     drive : dotted overrides of the study's drive for this run; empty = the study's own drive.
-    noise : K, standard deviation of a reading; None = the noise of each sensor's card.
+    noise : sensor -> K, standard deviation of a reading; without those of the sensors' cards.
     hold_out : whether no fit may use the run.
     """
 
     run: MeasuredRun
+    origin: str
     drive: Mapping[str, Any] = field(default_factory=dict)
-    noise: float | None = None
+    noise: Mapping[str, float] = field(default_factory=dict)
     hold_out: bool = False
+
+    @classmethod
+    def of(cls, record: Record) -> Experiment:
+        """The experiment of a run and its entry."""
+        run, entry = record.run, record.entry
+        if not run.sensors:
+            raise InputError(f"run '{run.name}': every sensor is ignored", file=run.file)
+        if entry is None:
+            return cls(run, run.name)
+        noise = {} if entry.noise is None else dict.fromkeys(run.sensors, entry.noise)
+        return cls(run, run.name, dict(entry.drive), noise, entry.hold_out)
 
     @property
     def name(self) -> str:
-        """The run's name."""
+        """The name among all runs: that of its table, with a number if others have it too."""
         return self.run.name
+
+    def noise_of(self, sensor: str, study: StudyLike) -> float:
+        """K, standard deviation of a reading of a sensor: that of the entry, else of the sensor's card."""
+        return self.noise.get(sensor, sensor_of(study, sensor).noise)
+
+    def joins(self, other: Experiment) -> bool:
+        """Whether both are one run with two loggers: the same run at the same drive, with different sensors."""
+        same = (self.origin, self.drive, self.hold_out) == (other.origin, other.drive, other.hold_out)
+        return same and set(self.run.sensors).isdisjoint(other.run.sensors)
+
+    def joined(self, other: Experiment) -> Experiment:
+        """This run with the sensors of the other logger."""
+        return replace(self, run=self.run.joined(other.run), noise={**self.noise, **other.noise})
 
 
 def experiments(
@@ -68,7 +88,8 @@ def experiments(
     """The runs to compare with: those of ``table``, or else of the study's ``[[measured]]`` entries.
 
     A run of a given table has the drive, noise, offset and column names of the entry with the same file or run name. A
-    run without an entry is compared with the study's drive.
+    run without an entry is compared with the study's drive. Tables with the same run, at the same drive and with
+    different sensors, are one run.
 
     Parameters
     ----------
@@ -77,37 +98,17 @@ def experiments(
     Raises
     ------
     InputError : no run; an effect is in a run that the study's tables do not have; an entry names a run that is not in
-        the table; a column is no sensor of the study; no table has a column that is to be renamed or ignored.
+        the table, or is that of another entry; a column is no sensor of the study; no table has a column that is to be
+        renamed or ignored.
     """
     given = ColumnNames.of(ignore=ignore, rename=rename)
-    entries = list(study.measured) if table is None else []
-    runs: list[MeasuredRun] = []
-    columns: list[str] = []
-    for each in _listed(table):
-        if isinstance(each, MeasuredRun):
-            runs.append(each.renamed(given.rename))
-            columns += [*each.sensors, *each.channels, *(parts(heading)[0] for heading in each.channels)]
-            continue
-        known = [entry for entry in study.measured if _is_file(each, entry.table)]
-        entries += known
-        if not known:
-            measured = _measured_table(each, given)
-            runs += measured.runs
-            columns += [*measured.columns, *measured.headings]
-    at_hand: dict[str, MeasuredTable] = {}
-    tables = [(entry, _table(entry, given, at_hand)) for entry in entries]
-    for entry, measured in tables:
-        columns += [*measured.columns, *measured.headings, *entry.rename.values()]
-    given.require(columns)
-    planned = [experiment for entry, measured in tables for experiment in _of_entry(entry, measured)]
-    planned += [_with_entry(run, study) for run in runs]
+    planned = [Experiment.of(record) for record in records(study.measured, table, given)]
     if not planned:
         raise InputError("there is no measured run to compare with")
-    planned = [_without_columns(experiment, given.ignore) for experiment in planned]
     _check_sensors([experiment.run for experiment in planned], study)
-    distinct = _with_distinct_names(planned)
+    distinct = _with_distinct_names(_joined(planned))
     if table is None and isinstance(study, StudyData):
-        check_runs(study, [experiment.name for experiment in distinct])
+        check_runs(study, [experiment.origin for experiment in distinct])
     return distinct
 
 
@@ -119,90 +120,14 @@ def sensor_of(study: StudyLike, name: str) -> SensorLike:
 def driven(study: StudyLike, experiment: Experiment) -> StudyLike:
     """The study at the drive of an experiment, with the effects that act in its run."""
     if acting_in(study, experiment) or (isinstance(study, StudyData) and study.card.run is not None):
-        return cast(StudyData, study).at_run(experiment.name, experiment.drive)
+        return cast(StudyData, study).at_run(experiment.origin, experiment.drive)
     return study.with_drive(dict(experiment.drive)) if experiment.drive else study
 
 
 def acting_in(study: StudyLike, experiment: Experiment) -> tuple[int, ...]:
     """Numbers of the study's effects that act in some runs only, and in that of the experiment."""
     effects = study.card.effects if isinstance(study, StudyData) else ()
-    return tuple(i for i, effect in enumerate(effects) if effect.runs and effect.acts_in(experiment.name))
-
-
-def _listed(table: Table | None) -> Sequence[Any]:
-    """The given tables and runs as a sequence."""
-    if table is None:
-        return ()
-    if isinstance(table, str | Path | MeasuredRun) or is_frame(table):
-        return (table,)
-    if isinstance(table, Sequence):
-        return table
-    raise _no_table(table)
-
-
-def _is_file(table: Any, file: str | Path) -> bool:
-    return isinstance(table, str | Path) and Path(table).absolute() == Path(file).absolute()
-
-
-def _measured_table(table: Any, given: ColumnNames) -> MeasuredTable:
-    """The table of a file or a data frame."""
-    if is_frame(table):
-        return frame_table(table, rename=given.rename, ignore=given.ignore)
-    if isinstance(table, str | Path):
-        return read(table, rename=given.rename, ignore=given.ignore)
-    raise _no_table(table)
-
-
-def _no_table(table: object) -> InputError:
-    return InputError(
-        f"a value of type {type(table).__name__} is no measured table; allowed: a CSV file's path, a pandas DataFrame "
-        "with 'time [s]' and sensors like 'crown [degC]', a MeasuredRun, or a list of these"
-    )
-
-
-def _table(entry: MeasuredEntryLike, given: ColumnNames, at_hand: dict[str, MeasuredTable]) -> MeasuredTable:
-    """The table of an entry, read once; it must have the columns that the entry names."""
-    rename, ignore = {**entry.rename, **given.rename}, (*entry.ignore, *given.ignore)
-    key = repr((entry.table, entry.time_offset, rename, ignore))
-    if key not in at_hand:
-        at_hand[key] = read(entry.table, time_offset=entry.time_offset, rename=rename, ignore=ignore)
-    measured = at_hand[key]
-    for names, purpose in ((entry.rename, "to rename"), (entry.ignore, "to ignore")):
-        missing = measured.missing(names)
-        if missing:
-            raise missing_columns_error(missing, purpose, measured.columns, measured.file)
-    return measured
-
-
-def _of_entry(entry: MeasuredEntryLike, measured: MeasuredTable) -> list[Experiment]:
-    names = [run.name for run in measured.runs]
-    if entry.run is not None and entry.run not in names:
-        wrong = f"no run '{entry.run}'{nearest(entry.run, names)}"
-        raise InputError(wrong, field="measured.run", file=entry.table)
-    return [
-        Experiment(run, dict(entry.drive), entry.noise, entry.hold_out)
-        for run in measured.runs
-        if entry.run in (None, run.name)
-    ]
-
-
-def _with_entry(run: MeasuredRun, study: StudyLike) -> Experiment:
-    for entry in study.measured:
-        if run.name == (entry.run or Path(entry.table).stem):
-            shifted = run.shifted(entry.time_offset).renamed(entry.rename)
-            return _without_columns(
-                Experiment(shifted, dict(entry.drive), entry.noise, entry.hold_out), tuple(entry.ignore)
-            )
-    return Experiment(run)
-
-
-def _without_columns(experiment: Experiment, ignore: tuple[str, ...]) -> Experiment:
-    kept = [sensor for sensor in experiment.run.sensors if sensor not in ignore]
-    if not kept:
-        raise InputError(f"run '{experiment.name}': every sensor is ignored", file=experiment.run.file)
-    channels = tuple(text for text in experiment.run.channels if not {text, parts(text)[0]} & set(ignore))
-    run = replace(experiment.run, temperatures=experiment.run.temperatures[kept], channels=channels)
-    return replace(experiment, run=run)
+    return tuple(i for i, effect in enumerate(effects) if effect.runs and effect.acts_in(experiment.origin))
 
 
 def _check_sensors(runs: Sequence[MeasuredRun], study: StudyLike) -> None:
@@ -233,12 +158,28 @@ def _check_sensors(runs: Sequence[MeasuredRun], study: StudyLike) -> None:
     )
 
 
+def _joined(experiments: Sequence[Experiment]) -> list[Experiment]:
+    """The experiments; runs that several loggers recorded have the sensors of all."""
+    result: list[Experiment] = []
+    for experiment in experiments:
+        place = next((i for i, before in enumerate(result) if before.joins(experiment)), None)
+        if place is None:
+            result.append(experiment)
+        else:
+            result[place] = result[place].joined(experiment)
+    return result
+
+
 def _with_distinct_names(experiments: Sequence[Experiment]) -> tuple[Experiment, ...]:
-    """The experiments with distinct run names; the records of two loggers of one run are two runs."""
-    taken: dict[str, int] = {}
+    """The experiments with distinct names; two records of the same sensors in one run stay apart."""
+    names: set[str] = {experiment.origin for experiment in experiments}
+    used: set[str] = set()
     result = []
     for experiment in experiments:
-        taken[experiment.name] = taken.get(experiment.name, 0) + 1
-        name = experiment.name if taken[experiment.name] == 1 else f"{experiment.name} ({taken[experiment.name]})"
+        name, number = experiment.origin, 1
+        while name in used or (number > 1 and name in names):
+            number += 1
+            name = f"{experiment.origin} ({number})"
+        used.add(name)
         result.append(replace(experiment, run=replace(experiment.run, name=name)))
     return tuple(result)

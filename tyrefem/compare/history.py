@@ -104,7 +104,7 @@ def histories(
                 phases=phase_names(times, result.phases),
                 gradient=_gradient(result, sensor, times),
                 changes={key: at_times(other, sensor, times) - computed for key, other in perturbed.items()},
-                noise=card.noise if experiment.noise is None else experiment.noise,
+                noise=experiment.noise_of(sensor, study),
                 accuracy=card.accuracy,
                 position_sd=card.position_sd,
                 numerical=float(np.hypot(study.tolerance, study.numerical_sd)),

@@ -10,9 +10,10 @@ from typing import Any, TypedDict, Unpack
 import numpy as np
 
 from tyrefem.compare.comparison import ComparisonData, comparison_of
-from tyrefem.compare.experiment import Experiment, Table, acting_in, driven, experiments, sensor_of
+from tyrefem.compare.experiment import Experiment, acting_in, driven, experiments
 from tyrefem.compare.history import histories
 from tyrefem.compare.interface import ResultLike, StudyLike, computed_of
+from tyrefem.compare.records import Table
 from tyrefem.compare.reduced_inputs import (
     DEFAULT,
     ReducedInputCertificate,
@@ -313,7 +314,7 @@ def _uncertainty_notes(study: StudyLike, planned: Sequence[Experiment], inputs: 
         sensor: None
         for experiment in planned
         for sensor in experiment.run.sensors
-        if not (sensor_of(study, sensor).noise if experiment.noise is None else experiment.noise)
+        if not experiment.noise_of(sensor, study)
     }
     if silent:
         notes.append(f"Note: no measurement noise is stated for {', '.join(silent)}")

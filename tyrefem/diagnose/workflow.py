@@ -10,7 +10,8 @@ from functools import partial
 from typing import Any, Unpack
 
 from tyrefem.brief import Brief
-from tyrefem.compare.experiment import Table, experiments
+from tyrefem.compare.experiment import experiments
+from tyrefem.compare.records import Table
 from tyrefem.diagnose.amend import Change, amended, changes
 from tyrefem.diagnose.beside.best_fit import fit_beside, not_asked_for
 from tyrefem.diagnose.beside.free_heat import free_heat
@@ -274,7 +275,7 @@ def _in_single_runs(
     """The candidates that depend on the day, each in one of the fitted runs."""
     if not settings.odd_run_share:
         return ()
-    return in_single_runs(study, candidates, [run.name for run in runs if not run.hold_out])
+    return in_single_runs(study, candidates, list(dict.fromkeys(run.run for run in runs if not run.hold_out)))
 
 
 @dataclass(frozen=True, eq=False)

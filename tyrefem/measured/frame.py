@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Iterable, Mapping
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tyrefem.errors import InputError
 from tyrefem.measured.columns import is_time, parts
-from tyrefem.measured.table import MeasuredTable, read
+from tyrefem.measured.lines import split
+from tyrefem.measured.table import TableLines
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -26,16 +25,14 @@ def is_frame(table: object) -> bool:
     return hasattr(table, "to_csv") and hasattr(table, "columns")
 
 
-def frame_table(
-    frame: pd.DataFrame, *, rename: Mapping[str, str] | None = None, ignore: Iterable[str] = ()
-) -> MeasuredTable:
-    """The runs of a frame with the columns of a file: ``time [s]`` (or the index so named), perhaps ``run``, sensors.
+def frame_lines(frame: pd.DataFrame) -> TableLines:
+    """The rows of a frame with the columns of a file: ``time [s]`` (or the index so named), perhaps ``run``, sensors.
 
-    A result's `readings` have this form. A frame without a column ``run`` is one run, "measured". Options and errors:
-    see `tyrefem.measured.read_table`.
+    A result's `readings` have this form. A frame without a column ``run`` is one run, "measured".
 
     >>> import pandas as pd
-    >>> run, = frame_table(pd.DataFrame({"time [min]": [0, 1, 2], "crown [degF]": [77.0, None, 95.0]})).runs
+    >>> frame = pd.DataFrame({"time [min]": [0, 1, 2], "crown [degF]": [77.0, None, 95.0]})
+    >>> run, = frame_lines(frame).read().runs
     >>> run.name, run.times.tolist(), run.temperatures["crown"].tolist()
     ('measured', [0.0, 60.0, 120.0], [25.0, nan, 35.0])
     """
@@ -44,10 +41,10 @@ def frame_table(
         file = Path(folder) / "measured.csv"
         _flat(frame).to_csv(file, index=False, lineterminator="\n", date_format=STAMP)
         try:
-            table = read(file, rename=rename, ignore=ignore)
+            lines = split(file)
         except InputError as error:
             raise InputError(error.message, field=error.field, file=PLACE) from None
-    return replace(table, file=PLACE, runs=tuple(replace(run, file=None) for run in table.runs))
+    return TableLines(lines, PLACE, file.stem, in_memory=True)
 
 
 def _flat(frame: pd.DataFrame) -> pd.DataFrame:
