@@ -4,29 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import Any, cast
 
-from tyrefem.compare.interface import SensorLike, StudyLike
-from tyrefem.compare.records import Record, Table, records
-from tyrefem.errors import InputError, nearest, quoted
+from tyrefem.compare.interface import MeasuredEntryLike, StudyLike
+from tyrefem.compare.sensors import check_sensors, sensor_of
+from tyrefem.errors import InputError, nearest
 from tyrefem.inputs.study import StudyData
-from tyrefem.inputs.study_card import Sensor
 from tyrefem.inputs.study_effects import check_runs
 from tyrefem.measured import MeasuredRun
 from tyrefem.measured.columns import parts
-from tyrefem.measured.names import ColumnNames
+from tyrefem.measured.frame import frame_lines, is_frame
+from tyrefem.measured.names import ColumnNames, missing_columns_error
+from tyrefem.measured.table import MeasuredTable, TableLines, table_lines
 
-#: Temperatures that are computed with the sensors and measured like them, but at no place in the rubber.
-OUTSIDE_THE_RUBBER = ("contained-air", "rim")
-
-
-@dataclass(frozen=True)
-class SensorWithoutCard:
-    """Standard uncertainties of a reading outside the rubber: the defaults of a sensor's card, and no position."""
-
-    noise: float = Sensor.model_fields["noise"].default
-    accuracy: float = Sensor.model_fields["accuracy"].default
-    position_sd: float = 0.0
+#: A CSV file, a pandas DataFrame with the same columns, a run already read, or several of these.
+Table = Any
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,9 +42,8 @@ class Experiment:
     hold_out: bool = False
 
     @classmethod
-    def of(cls, record: Record) -> Experiment:
-        """The experiment of a run and its entry."""
-        run, entry = record.run, record.entry
+    def of(cls, run: MeasuredRun, entry: MeasuredEntryLike | None) -> Experiment:
+        """A run, with the names of the study's sensors, as its entry says; None: a run that the study does not name."""
         if not run.sensors:
             raise InputError(f"run '{run.name}': every sensor is ignored", file=run.file)
         if entry is None:
@@ -102,19 +94,16 @@ def experiments(
         renamed or ignored.
     """
     given = ColumnNames.of(ignore=ignore, rename=rename)
-    planned = [Experiment.of(record) for record in records(study.measured, table, given)]
+    reader = _Reader(study.measured, given)
+    planned = reader.of_entries(study.measured) if table is None else reader.of_tables(table)
+    given.require(reader.columns)
     if not planned:
         raise InputError("there is no measured run to compare with")
-    _check_sensors([experiment.run for experiment in planned], study)
+    check_sensors([experiment.run for experiment in planned], study)
     distinct = _with_distinct_names(_joined(planned))
     if table is None and isinstance(study, StudyData):
         check_runs(study, [experiment.origin for experiment in distinct])
     return distinct
-
-
-def sensor_of(study: StudyLike, name: str) -> SensorLike:
-    """Standard uncertainties of a sensor; those of contained air and rim, if the study gives them no card."""
-    return study.sensors.get(name, SensorWithoutCard())
 
 
 def driven(study: StudyLike, experiment: Experiment) -> StudyLike:
@@ -128,34 +117,6 @@ def acting_in(study: StudyLike, experiment: Experiment) -> tuple[int, ...]:
     """Numbers of the study's effects that act in some runs only, and in that of the experiment."""
     effects = study.card.effects if isinstance(study, StudyData) else ()
     return tuple(i for i, effect in enumerate(effects) if effect.runs and effect.acts_in(experiment.origin))
-
-
-def _check_sensors(runs: Sequence[MeasuredRun], study: StudyLike) -> None:
-    """Raises InputError for all columns that are no sensors, and for a sensor's column without a temperature unit."""
-    allowed = {*study.sensors, *OUTSIDE_THE_RUBBER}
-    unknown: dict[str, list[MeasuredRun]] = {}
-    for run in runs:
-        for sensor in run.sensors:
-            if sensor not in allowed:
-                unknown.setdefault(sensor, []).append(run)
-        for heading in run.channels:
-            if parts(heading)[0] in allowed:
-                raise InputError(f"column '{heading}': a sensor's unit is degC, degF or K", file=run.file)
-    if not unknown:
-        return
-    files = {run.file for runs_with in unknown.values() for run in runs_with}
-    file = next(iter(files)) if len(files) == 1 else None
-    names = sorted(path.name for path in files if path is not None)
-    where = f" (in {', '.join(names)})" if len(names) > 1 else ""
-    if len(unknown) == 1:
-        (column,) = unknown
-        wrong = f"column '{column}'{where} is no sensor of study '{study.name}'{nearest(column, allowed)}"
-        raise InputError(f"{wrong}; rename it, or ignore it", file=file)
-    raise InputError(
-        f"columns {quoted(unknown, allowed)}{where} are no sensors of study '{study.name}'; allowed: "
-        f"{', '.join(sorted(allowed))}; rename them, or ignore them",
-        file=file,
-    )
 
 
 def _joined(experiments: Sequence[Experiment]) -> list[Experiment]:
@@ -183,3 +144,140 @@ def _with_distinct_names(experiments: Sequence[Experiment]) -> tuple[Experiment,
         used.add(name)
         result.append(replace(experiment, run=replace(experiment.run, name=name)))
     return tuple(result)
+
+
+class _Reader:
+    """Reads tables by entries and given names. ``columns``: names and headings of all columns read."""
+
+    def __init__(self, entries: Sequence[MeasuredEntryLike], given: ColumnNames) -> None:
+        self.entries, self.given = entries, given
+        self.columns: list[str] = []
+        self._at_hand: dict[str, MeasuredTable] = {}
+        self._frames = 0
+
+    def of_entries(self, entries: Sequence[MeasuredEntryLike]) -> list[Experiment]:
+        """The runs of entries; one without ``run`` has those runs of its table that no other entry names."""
+        named: dict[Path, list[str | None]] = {}
+        for entry in entries:
+            before = named.setdefault(_path(entry.table), [])
+            if entry.run in before:
+                which = "all runs" if entry.run is None else f"run '{entry.run}'"
+                hint = "; give each entry its 'run'" if entry.run is None else ""
+                raise InputError(f"two entries for {which} of this table{hint}", field="measured.run", file=entry.table)
+            before.append(entry.run)
+        result = []
+        for entry in entries:
+            measured = self._of_entry(entry)
+            names = [run.name for run in measured.runs]
+            if entry.run is not None and entry.run not in names:
+                wrong = f"no run '{entry.run}'{nearest(entry.run, names)}"
+                raise InputError(wrong, field="measured.run", file=entry.table)
+            wanted = {entry.run} if entry.run is not None else {*names} - {*named[_path(entry.table)]}
+            result += [Experiment.of(self._later(run, measured), entry) for run in measured.runs if run.name in wanted]
+        return result
+
+    def of_tables(self, table: Table) -> list[Experiment]:
+        """The runs of one or several tables."""
+        alone = isinstance(table, str | Path | MeasuredRun) or is_frame(table)
+        if not alone and not isinstance(table, Sequence):
+            raise _no_table(table)
+        return [experiment for each in ((table,) if alone else table) for experiment in self._of_table(each)]
+
+    def _of_table(self, table: Any) -> list[Experiment]:
+        """The runs of a file, a frame or a run already read."""
+        if isinstance(table, MeasuredRun):
+            return [self._of_run(table)]
+        if is_frame(table):
+            return self._of_frame(table)
+        if not isinstance(table, str | Path):
+            raise _no_table(table)
+        of_file = [entry for entry in self.entries if _path(entry.table) == _path(table)]
+        return self.of_entries(of_file) if of_file else self._of_other(table_lines(table))
+
+    def _of_entry(self, entry: MeasuredEntryLike) -> MeasuredTable:
+        """The table of an entry, read once; it must have the columns that the entry names."""
+        names = self._names(entry)
+        key = repr((entry.table, entry.time_offset, names))
+        if key not in self._at_hand:
+            self._at_hand[key] = _read(table_lines(entry.table), names, entry)
+        measured = self._at_hand[key]
+        for wanted, purpose in ((entry.rename, "to rename"), (entry.ignore, "to ignore")):
+            missing = measured.missing(wanted)
+            if missing:
+                raise missing_columns_error(missing, purpose, measured.columns, measured.file)
+        self._note(measured, entry)
+        return measured
+
+    def _of_other(self, lines: TableLines) -> list[Experiment]:
+        """The runs of a table of no entry, each read as the entry of its name says."""
+        of_run = {name: self._entry_of(name) for name in lines.runs(self.given.ignore)}
+        result = {}
+        for entry in _distinct(of_run.values()):
+            names = self._names(entry)
+            measured = _read(lines, names, entry)
+            self._note(measured, entry)
+            for run in measured.runs:
+                if of_run.get(run.name) is entry:
+                    result[run.name] = Experiment.of(self._later(run, measured), entry)
+        return [result[name] for name in of_run if name in result]
+
+    def _of_frame(self, frame: Any) -> list[Experiment]:
+        """The runs of a frame; frames whose runs have no names are different runs."""
+        lines = frame_lines(frame)
+        result = self._of_other(lines)
+        nameless = lines.runs(self.given.ignore) == (lines.name,)
+        self._frames += nameless
+        if not nameless or self._frames == 1:
+            return result
+        return [replace(each, origin=f"{lines.name} ({self._frames})") for each in result]
+
+    def _of_run(self, run: MeasuredRun) -> Experiment:
+        """A run already read, as the entry of its name says."""
+        entry = self._entry_of(run.name)
+        names = self._names(entry)
+        known = [*run.sensors, *run.channels, *(parts(heading)[0] for heading in run.channels)]
+        self.columns += [*known, *(entry.rename.values() if entry else ())]
+        shifted = run.shifted(0.0 if entry is None else entry.time_offset)
+        renamed = shifted.without(names.ignore).renamed(names.rename)
+        return Experiment.of(renamed.without(name for name in self.given.ignore if name not in known), entry)
+
+    def _names(self, entry: MeasuredEntryLike | None) -> ColumnNames:
+        """The given names, before those of an entry."""
+        if entry is None:
+            return self.given
+        return ColumnNames({**entry.rename, **self.given.rename}, (*entry.ignore, *self.given.ignore))
+
+    def _entry_of(self, run: str) -> MeasuredEntryLike | None:
+        return next((entry for entry in self.entries if run == (entry.run or Path(entry.table).stem)), None)
+
+    def _later(self, run: MeasuredRun, measured: MeasuredTable) -> MeasuredRun:
+        """The run without sensors that are ignored by their new names."""
+        return run.without(measured.missing(self.given.ignore))
+
+    def _note(self, measured: MeasuredTable, entry: MeasuredEntryLike | None) -> None:
+        self.columns += [*measured.columns, *measured.headings, *(entry.rename.values() if entry else ())]
+
+
+def _read(lines: TableLines, names: ColumnNames, entry: MeasuredEntryLike | None) -> MeasuredTable:
+    offset = 0.0 if entry is None else entry.time_offset
+    return lines.read(time_offset=offset, rename=names.rename, ignore=names.ignore)
+
+
+def _distinct(entries: Iterable[MeasuredEntryLike | None]) -> list[MeasuredEntryLike | None]:
+    """Each entry once."""
+    return list({id(entry): entry for entry in entries}.values())
+
+
+def _path(table: str | Path) -> Path:
+    """A file's path, however it is written; what cannot be a path is refused when it is read."""
+    try:
+        return Path(table).resolve()
+    except (OSError, RuntimeError, ValueError):
+        return Path(table).absolute()
+
+
+def _no_table(table: object) -> InputError:
+    return InputError(
+        f"a value of type {type(table).__name__} is no measured table; allowed: a CSV file's path, a pandas DataFrame "
+        "with 'time [s]' and sensors like 'crown [degC]', a MeasuredRun, or a list of these"
+    )

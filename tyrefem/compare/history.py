@@ -8,8 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.compare.experiment import Experiment, sensor_of
+from tyrefem.compare.experiment import Experiment
 from tyrefem.compare.interface import PhaseLike, ResultLike, StudyLike
+from tyrefem.compare.sensors import sensor_of
 from tyrefem.errors import InputError, nearest
 
 Array = NDArray[np.float64]

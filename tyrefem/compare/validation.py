@@ -10,10 +10,9 @@ from typing import Any, TypedDict, Unpack
 import numpy as np
 
 from tyrefem.compare.comparison import ComparisonData, comparison_of
-from tyrefem.compare.experiment import Experiment, acting_in, driven, experiments
+from tyrefem.compare.experiment import Experiment, Table, acting_in, driven, experiments
 from tyrefem.compare.history import histories
 from tyrefem.compare.interface import ResultLike, StudyLike, computed_of
-from tyrefem.compare.records import Table
 from tyrefem.compare.reduced_inputs import (
     DEFAULT,
     ReducedInputCertificate,

@@ -10,8 +10,7 @@ from functools import partial
 from typing import Any, Unpack
 
 from tyrefem.brief import Brief
-from tyrefem.compare.experiment import experiments
-from tyrefem.compare.records import Table
+from tyrefem.compare.experiment import Table, experiments
 from tyrefem.diagnose.amend import Change, amended, changes
 from tyrefem.diagnose.beside.best_fit import fit_beside, not_asked_for
 from tyrefem.diagnose.beside.free_heat import free_heat
