@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 
 from tyrefem.errors import InputError
 from tyrefem.measured import MeasuredRun, read_table
+from tyrefem.measured.columns import COLDEST, HOTTEST
 from tyrefem.measured.lines import LARGEST_BYTES
 
 TIMES = [0.0, 60.0, 120.0]
@@ -96,7 +97,7 @@ def test_calendar_times_need_an_offset(tmp_path):
     assert run.times.tolist() == [0.0, 1.0]
 
 
-@given(st.lists(st.floats(-273.15, 2000.0), min_size=1, max_size=20))
+@given(st.lists(st.floats(COLDEST, HOTTEST), min_size=1, max_size=20))
 def test_units_round_trip(tmp_path_factory, degC):
     """The same temperatures written in three units come back the same to rounding of the file."""
     values = np.array(degC)
@@ -153,7 +154,18 @@ BAD = {
     "unsorted": (HEAD + "0,25,25\n2,25,25\n1,25,25\n", "lines 3 and 4: time runs back from 2 s to 1 s"),
     "empty sensor": (HEAD + "0,25,\n1,25,-\n", "column 'bead [degC]' has no reading"),
     "too cold": (HEAD + "0,25,25\n1,25,-9999\n", "line 3, column 'bead [degC]': -9999 degC is below absolute"),
-    "too cold in K": ("time [s],crown [K]\n0,-1\n", "line 2, column 'crown [K]': -274.15 degC is below absolute"),
+    "too cold in K": (
+        "time [s],crown [K]\n0,-300\n",
+        "line 2, column 'crown [K]': -573.15 degC is below absolute zero; leave the cell empty",
+    ),
+    "type K": (
+        "time [s],crown [K]\n0,25\n1,80\n",
+        "line 2, column 'crown [K]': -248.15 degC (25 K) is too cold; K is kelvin: a thermocouple of type K is written "
+        "'crown [degC]'",
+    ),
+    "code of a cold end": (HEAD + "0,25,25\n1,-200,25\n", "line 3, column 'crown [degC]': -200 degC is below -90 degC"),
+    "code of a hot end": (HEAD + "0,25,999.9\n", "line 2, column 'bead [degC]': 999.9 degC is above 900 degC (an open"),
+    "hot in degF": ("time [s],crown [degF]\n0,2501.6\n", "line 2, column 'crown [degF]': 1372 degC is above"),
     "open thermocouple": (HEAD + "0,25,9999\n", "line 2, column 'bead [degC]': 9999 degC is above"),
     "short row": (HEAD + "0,25,25\n1,25\n", "line 3: 2 cells, but the heading has 3"),
     "long row": (HEAD + "0,25,25\n1,25,25,25\n", "line 3: 4 cells, but the heading has 3"),
@@ -239,7 +251,7 @@ def read_or_refused(tmp_path_factory, content):
     for run in runs:
         assert np.all(np.diff(run.times) > 0.0)
         readings = run.temperatures.to_numpy()
-        assert np.all(np.isnan(readings) | (np.abs(readings - 863.425) <= 1136.575 + 1e-6))
+        assert np.all(np.isnan(readings) | ((readings >= COLDEST - 1e-6) & (readings <= HOTTEST + 1e-6)))
         assert np.isfinite(readings).any(axis=0).all()
 
 
