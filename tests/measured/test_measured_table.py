@@ -130,6 +130,20 @@ BAD = {
     "only comments": ("# nothing\n// more\n", "only comments"),
     "no time": ("seconds,crown [degC]\n0,25\n", "line 1: no time column"),
     "time without unit": ("time,crown [degC]\n0,25\n", "line 1: 'time' has no unit"),
+    "minutes or metres": (
+        "time (m),crown [degC]\n0,25\n",
+        "line 1: time unit 'm': write 'min' for minutes; allowed: s,",
+    ),
+    "other dates": (
+        "time,crown [degC]\n,1\n01.05.2024 12:30,25\n",
+        "line 1: 'time' begins with '01.05.2024 12:30', which is no timestamp like 2024-05-01T12:30:01",
+    ),
+    "date and clock": ("Date,Time,crown [degC]\n2024-05-01,12:30,25\n", "(date and time in one column)"),
+    "torque": (
+        "time [s],torque [Nm],crown [degC]\n0,1,25\n",
+        "unknown temperature unit 'Nm'; allowed: K, degC, degF (column 'torque [Nm]'); columns of other quantities "
+        "need `ignore`",
+    ),
     "unknown time unit": ("time [sek],crown [degC]\n0,25\n", "line 1: unknown time unit 'sek'"),
     "no sensor": ("time [s]\n0\n", "line 1: no sensor column"),
     "sensor without unit": ("# x\ntime [s],crown\n0,25\n", "line 2: 'crown' has no unit"),
@@ -167,7 +181,10 @@ BAD = {
     "code of a hot end": (HEAD + "0,25,999.9\n", "line 2, column 'bead [degC]': 999.9 degC is above 900 degC (an open"),
     "hot in degF": ("time [s],crown [degF]\n0,2501.6\n", "line 2, column 'crown [degF]': 1372 degC is above"),
     "open thermocouple": (HEAD + "0,25,9999\n", "line 2, column 'bead [degC]': 9999 degC is above"),
-    "short row": (HEAD + "0,25,25\n1,25\n", "line 3: 2 cells, but the heading has 3"),
+    "short row": (
+        HEAD + "0,25,25\n1,25\n",
+        "line 3: 2 cells, but the heading has 3 (a cell without a reading is empty, not left out)",
+    ),
     "long row": (HEAD + "0,25,25\n1,25,25,25\n", "line 3: 4 cells, but the heading has 3"),
     "decimal commas": (HEAD + "0,25,5,25,5\n", "line 2: 5 cells, but the heading has 3 (decimal commas need"),
     "both marks": (

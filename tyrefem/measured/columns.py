@@ -103,19 +103,26 @@ def _temperature(unit: str) -> str | None:
     return _LETTERS.get(match[1].lower()) if match else None
 
 
-def time_unit(text: str) -> str:
-    """The unit of the time column.
+def time_unit(text: str, first: str = "") -> str:
+    """The unit of the time column, whose first cell is no timestamp.
 
     Raises
     ------
     InputError : no unit, or one that is not a time.
     """
     unit = parts(text)[1]
+    if not unit and first and _NUMBER.fullmatch(first) is None:
+        raise InputError(
+            f"'{text}' begins with {first[:40]!r}, which is no timestamp like 2024-05-01T12:30:01 (date and time in "
+            "one column); write all times so, or as numbers with a unit: 'time [s]'"
+        )
     if not unit:
         raise InputError(
             f"'{text}' has no unit; write 'time [s]' (or [min], [h], [ms]), or timestamps like 2024-05-01T12:30:01"
         )
     known = _SPELLINGS.get(unit.lower())
+    if unit.lower() == "m":
+        raise InputError(f"time unit '{unit}': write 'min' for minutes; allowed: {', '.join(TIME_UNITS)}")
     if known is None:
         raise InputError(f"unknown time unit '{unit[:30]}'{nearest(unit, TIME_UNITS)}")
     return known

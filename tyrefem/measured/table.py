@@ -184,8 +184,9 @@ def _columns(lines: Lines, rename: dict[str, str], ignore: frozenset[str], file:
             if is_time(text):
                 if time is not None:
                     raise InputError(f"two time columns, {time.column + 1} and {column + 1}")
-                stamped = are_timestamps([row[column] for row in lines.rows[:100]])
-                time = Heading(name, STAMPED if stamped else time_unit(text), column)
+                cells = [row[column] for row in lines.rows[:100]]
+                unit = STAMPED if are_timestamps(cells) else time_unit(text, next(filter(None, cells), ""))
+                time = Heading(name, unit, column)
                 continue
             if _is_run(text, ignore):
                 if run is not None:
@@ -214,7 +215,7 @@ def _columns(lines: Lines, rename: dict[str, str], ignore: frozenset[str], file:
         wrong = [line for line in wrong if "has no unit" not in line]
         wrong.append(f"{names} have no unit; write '{without_unit[0][:40]} [degC]' (or [degF], [K])")
     if wrong:
-        raise InputError(where + "; ".join(wrong), file=file)
+        raise InputError(f"{where}{'; '.join(wrong)}; columns of other quantities need `ignore`", file=file)
     if time is None:
         raise InputError(f"{where}the time column is ignored; it is needed", file=file)
     if not sensors:
