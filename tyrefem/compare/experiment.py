@@ -94,7 +94,7 @@ def experiments(
         renamed or ignored.
     """
     given = ColumnNames.of(ignore=ignore, rename=rename)
-    reader = _Reader(study.measured, given)
+    reader = _ExperimentReader(study.measured, given)
     planned = reader.of_entries(study.measured) if table is None else reader.of_tables(table)
     given.require(reader.columns)
     if not planned:
@@ -146,7 +146,7 @@ def _with_distinct_names(experiments: Sequence[Experiment]) -> tuple[Experiment,
     return tuple(result)
 
 
-class _Reader:
+class _ExperimentReader:
     """Reads tables by entries and given names. ``columns``: names and headings of all columns read."""
 
     def __init__(self, entries: Sequence[MeasuredEntryLike], given: ColumnNames) -> None:
@@ -264,8 +264,12 @@ def _read(lines: TableLines, names: ColumnNames, entry: MeasuredEntryLike | None
 
 
 def _distinct(entries: Iterable[MeasuredEntryLike | None]) -> list[MeasuredEntryLike | None]:
-    """Each entry once."""
-    return list({id(entry): entry for entry in entries}.values())
+    """Each entry once; entries with equal content are different entries."""
+    result: list[MeasuredEntryLike | None] = []
+    for entry in entries:
+        if not any(entry is before for before in result):
+            result.append(entry)
+    return result
 
 
 def _path(table: str | Path) -> Path:
