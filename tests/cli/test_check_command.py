@@ -36,6 +36,22 @@ def test_every_shipped_card_is_good(capfd: pytest.CaptureFixture[str]) -> None:
     assert [str(path) for path in cards if main(["check", str(path)]) != 0] == []
 
 
+@pytest.mark.parametrize(
+    ("table", "words"),
+    [
+        ("name,Lab 3\ntime [s],crown [degC]\n0,25\n", "a measured table, 1 run(s), 1 readings of crown"),
+        ("name,Lab 3\n\ntime;crown [degC]\n2024-05-01T12:30:01;25\n", "a measured table, 1 run(s)"),
+        ('"name","drive.load [lbf]","note"\n"t","1","time"\n', "a table of 1 case(s)"),
+    ],
+)
+def test_a_loggers_table_is_no_table_of_cases(
+    here: Path, capfd: pytest.CaptureFixture[str], table: str, words: str
+) -> None:
+    (here / "table.csv").write_text(table, encoding="utf-8")
+    assert main(["check", "table.csv"]) == 0
+    assert words in capfd.readouterr().out
+
+
 BAD = {
     "wrong.toml": (b"title = \n", "not valid TOML: Invalid value (at line 1, column 9)"),
     "empty.toml": (b"", "is empty"),

@@ -12,6 +12,7 @@ from toy_study import RISES, TAU, Entry, measured_from
 
 from tyrefem.compare import compare
 from tyrefem.errors import InputError
+from tyrefem.inputs.study_card import Sensor as StudySensor
 from tyrefem.measured import MeasuredRun
 
 EVERY_20 = np.arange(0.0, 1201.0, 20.0)
@@ -104,7 +105,9 @@ def test_contained_air_is_compared_without_a_place(study):
     run = measured_from(study, EVERY_20, sensors=("contained-air",), bias=-0.5)
     entry = row(compare(replace(study, gradient=1e3), run), "contained-air")
     assert entry["bias_K"] == pytest.approx(-0.5)
-    assert entry["u_data_K"] == 0.0
+    # Noise and accuracy are those of a sensor's card that states none.
+    card = StudySensor(s="0 mm", depth="0 mm")
+    assert entry["u_data_K"] == pytest.approx(np.hypot(card.noise / np.sqrt(entry["n"]), card.accuracy))
 
 
 def test_unknown_column_says_the_nearest_or_is_ignored(study):

@@ -13,6 +13,7 @@ import tyrefem as tf
 from tyrefem.compare import compare
 from tyrefem.errors import InputError
 from tyrefem.measured import read_table
+from tyrefem.measured.frame import frame_lines
 
 EVERY_20 = np.arange(0.0, 1201.0, 20.0)
 
@@ -80,3 +81,32 @@ def test_readings_of_a_result_are_a_table():
     quick = tf.study("example-validation", {"mesh.size": "12 mm"})
     result = quick.run()
     assert quick.compare(result.readings, result, inputs=False).rms_K == 0.0
+
+
+@pytest.mark.parametrize("form", ["column", "index", "objects"])
+def test_clocks_that_are_put_back_lose_no_hour(form: str) -> None:
+    stamps = pd.date_range("2024-10-27 00:30", periods=4, freq="30min", tz="UTC").tz_convert("Europe/Berlin")
+    frame = pd.DataFrame({"time": stamps, "crown [degC]": [20.0, 21.0, 22.0, 23.0]})
+    frame = {"column": frame, "index": frame.set_index("time"), "objects": frame.astype({"time": object})}[form]
+    (run,) = frame_lines(frame).read().runs
+    assert run.times.tolist() == [0.0, 1800.0, 3600.0, 5400.0]
+
+
+@pytest.mark.parametrize("index", [["time [s]"], ["run"], ["run", "time [s]"]])
+def test_an_index_whose_columns_were_kept(frame: pd.DataFrame, index: list[str]) -> None:
+    named = frame.assign(run="a")
+    (plain,) = frame_lines(named).read().runs
+    (run,) = frame_lines(named.set_index(index, drop=False)).read().runs
+    assert run.times.tolist() == plain.times.tolist()
+    pd.testing.assert_frame_equal(run.temperatures, plain.temperatures)
+
+
+def test_a_time_that_is_the_index_twice(frame: pd.DataFrame) -> None:
+    (run,) = frame_lines(frame.set_index([frame["time [s]"], frame["time [s]"]])).read().runs
+    assert run.times.tolist() == EVERY_20.tolist()
+
+
+def test_readings_of_a_result_by_time() -> None:
+    readings = pd.DataFrame({"time_s": [0.0, 5.0], "crown": [20.0, 21.0]}).set_index("time_s")
+    (run,) = frame_lines(readings).read().runs
+    assert run.times.tolist() == [0.0, 5.0]

@@ -11,8 +11,9 @@ import pytest
 from toy_study import Entry, Study, measured_from
 
 from tyrefem.compare import compare
+from tyrefem.diagnose.options import grouped
 from tyrefem.errors import InputError
-from tyrefem.measured import MeasuredRun
+from tyrefem.measured import MeasuredRun, read_table
 
 pytestmark = pytest.mark.fast
 
@@ -90,3 +91,43 @@ def test_other_quantities_are_left_out_and_said_so(study: Study, tmp_path: Path)
     file.write_text(file.read_text(encoding="utf-8").replace("speed [km/h]", "contained-air [kPa]"), encoding="utf-8")
     with pytest.raises(InputError, match=re.escape("column 'contained-air [kPa]': a sensor's unit is degC")):
         compare(study, file)
+
+
+@pytest.mark.parametrize("column", ["contained-air", "contained-air [kPa]"])
+def test_a_column_that_a_run_left_out_may_be_ignored(study: Study, column: str) -> None:
+    run = replace(measured_from(study, TIMES), channels=("contained-air [kPa]", "speed [km/h]"))
+    comparison = compare(study, run, ignore=[column])
+    assert set(comparison.table.sensor) == {"crown", "shoulder"}
+    assert next(note for note in comparison.notes if "left out: " in note).endswith("left out: speed [km/h]")
+
+
+def test_a_text_is_one_column_to_ignore(study: Study, tmp_path: Path) -> None:
+    file = logged(study, crown="crown", shoulder="room").write(tmp_path / "run-1.csv")
+    assert set(compare(study, file, ignore="room").table.sensor) == {"crown"}
+    assert read_table(file, ignore="room")[0].sensors == ("crown",)
+
+
+FUNCTIONS = {
+    "compare": compare,
+    "read_table": lambda _, file, **names: read_table(file, **names),
+    "diagnose": lambda _, file, **names: grouped(names),
+}
+
+
+@pytest.mark.parametrize("function", FUNCTIONS)
+@pytest.mark.parametrize(
+    ("names", "words"),
+    [
+        ({"rename": "T1"}, "rename: must give columns their sensors, like {'T1': 'crown'}, not 'T1'"),
+        ({"rename": ["T1"]}, "rename: must give columns their sensors"),
+        ({"rename": {"T1": 3}}, "rename: must give columns their sensors"),
+        ({"ignore": 3}, "ignore: must be a column's name, or a list of them, not 3"),
+        ({"ignore": ["T1", None]}, "ignore: must be a column's name, or a list of them"),
+    ],
+)
+def test_names_of_another_form_are_refused(
+    study: Study, tmp_path: Path, function: str, names: dict[str, object], words: str
+) -> None:
+    file = logged(study).write(tmp_path / "run-1.csv")
+    with pytest.raises(InputError, match=re.escape(words)):
+        FUNCTIONS[function](study, file, **names)

@@ -167,3 +167,9 @@ def test_the_verdict_is_wrong_as_rarely_as_k_promises(study):
 def test_a_coverage_factor_is_positive(study, k):
     with pytest.raises(InputError, match="coverage factor"):
         compare(study, measured_from(study, EVERY_10), k=k)
+
+
+def test_a_sensor_whose_card_states_no_noise_is_named(study):
+    silent = replace(study, sensors={"crown": Sensor(noise=0.0), "shoulder": Sensor()})
+    notes = compare(silent, measured_from(study, EVERY_10)).notes
+    assert "Note: no measurement noise is stated for crown" in notes

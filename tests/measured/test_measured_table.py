@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 
 from tyrefem.errors import InputError
 from tyrefem.measured import MeasuredRun, read_table
+from tyrefem.measured.columns import COLDEST, HOTTEST
 from tyrefem.measured.lines import LARGEST_BYTES
 
 TIMES = [0.0, 60.0, 120.0]
@@ -96,7 +97,7 @@ def test_calendar_times_need_an_offset(tmp_path):
     assert run.times.tolist() == [0.0, 1.0]
 
 
-@given(st.lists(st.floats(-273.15, 2000.0), min_size=1, max_size=20))
+@given(st.lists(st.floats(COLDEST, HOTTEST), min_size=1, max_size=20))
 def test_units_round_trip(tmp_path_factory, degC):
     """The same temperatures written in three units come back the same to rounding of the file."""
     values = np.array(degC)
@@ -129,6 +130,20 @@ BAD = {
     "only comments": ("# nothing\n// more\n", "only comments"),
     "no time": ("seconds,crown [degC]\n0,25\n", "line 1: no time column"),
     "time without unit": ("time,crown [degC]\n0,25\n", "line 1: 'time' has no unit"),
+    "minutes or metres": (
+        "time (m),crown [degC]\n0,25\n",
+        "line 1: time unit 'm': write 'min' for minutes; allowed: s,",
+    ),
+    "other dates": (
+        "time,crown [degC]\n,1\n01.05.2024 12:30,25\n",
+        "line 1: 'time' begins with '01.05.2024 12:30', which is no timestamp like 2024-05-01T12:30:01",
+    ),
+    "date and clock": ("Date,Time,crown [degC]\n2024-05-01,12:30,25\n", "(date and time in one column)"),
+    "torque": (
+        "time [s],torque [Nm],crown [degC]\n0,1,25\n",
+        "unknown temperature unit 'Nm'; allowed: K, degC, degF (column 'torque [Nm]'); columns of other quantities "
+        "need `ignore`",
+    ),
     "unknown time unit": ("time [sek],crown [degC]\n0,25\n", "line 1: unknown time unit 'sek'"),
     "no sensor": ("time [s]\n0\n", "line 1: no sensor column"),
     "sensor without unit": ("# x\ntime [s],crown\n0,25\n", "line 2: 'crown' has no unit"),
@@ -153,9 +168,23 @@ BAD = {
     "unsorted": (HEAD + "0,25,25\n2,25,25\n1,25,25\n", "lines 3 and 4: time runs back from 2 s to 1 s"),
     "empty sensor": (HEAD + "0,25,\n1,25,-\n", "column 'bead [degC]' has no reading"),
     "too cold": (HEAD + "0,25,25\n1,25,-9999\n", "line 3, column 'bead [degC]': -9999 degC is below absolute"),
-    "too cold in K": ("time [s],crown [K]\n0,-1\n", "line 2, column 'crown [K]': -274.15 degC is below absolute"),
+    "too cold in K": (
+        "time [s],crown [K]\n0,-300\n",
+        "line 2, column 'crown [K]': -573.15 degC is below absolute zero; leave the cell empty",
+    ),
+    "type K": (
+        "time [s],crown [K]\n0,25\n1,80\n",
+        "line 2, column 'crown [K]': -248.15 degC (25 K) is too cold; K is kelvin: a thermocouple of type K is written "
+        "'crown [degC]'",
+    ),
+    "code of a cold end": (HEAD + "0,25,25\n1,-200,25\n", "line 3, column 'crown [degC]': -200 degC is below -90 degC"),
+    "code of a hot end": (HEAD + "0,25,999.9\n", "line 2, column 'bead [degC]': 999.9 degC is above 900 degC (an open"),
+    "hot in degF": ("time [s],crown [degF]\n0,2501.6\n", "line 2, column 'crown [degF]': 1372 degC is above"),
     "open thermocouple": (HEAD + "0,25,9999\n", "line 2, column 'bead [degC]': 9999 degC is above"),
-    "short row": (HEAD + "0,25,25\n1,25\n", "line 3: 2 cells, but the heading has 3"),
+    "short row": (
+        HEAD + "0,25,25\n1,25\n",
+        "line 3: 2 cells, but the heading has 3 (a cell without a reading is empty, not left out)",
+    ),
     "long row": (HEAD + "0,25,25\n1,25,25,25\n", "line 3: 4 cells, but the heading has 3"),
     "decimal commas": (HEAD + "0,25,5,25,5\n", "line 2: 5 cells, but the heading has 3 (decimal commas need"),
     "both marks": (
@@ -239,7 +268,7 @@ def read_or_refused(tmp_path_factory, content):
     for run in runs:
         assert np.all(np.diff(run.times) > 0.0)
         readings = run.temperatures.to_numpy()
-        assert np.all(np.isnan(readings) | (np.abs(readings - 863.425) <= 1136.575 + 1e-6))
+        assert np.all(np.isnan(readings) | ((readings >= COLDEST - 1e-6) & (readings <= HOTTEST + 1e-6)))
         assert np.isfinite(readings).any(axis=0).all()
 
 

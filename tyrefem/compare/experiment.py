@@ -8,16 +8,16 @@ from pathlib import Path
 from typing import Any, cast
 
 from tyrefem.compare.interface import MeasuredEntryLike, StudyLike
-from tyrefem.errors import InputError, nearest, quoted
+from tyrefem.compare.sensors import check_sensors, sensor_of
+from tyrefem.errors import InputError, nearest
 from tyrefem.inputs.study import StudyData
 from tyrefem.inputs.study_effects import check_runs
 from tyrefem.measured import MeasuredRun
 from tyrefem.measured.columns import parts
-from tyrefem.measured.frame import frame_table, is_frame
-from tyrefem.measured.table import MeasuredTable, missing_columns_error, read
+from tyrefem.measured.frame import frame_lines, is_frame
+from tyrefem.measured.names import ColumnNames, missing_columns_error
+from tyrefem.measured.table import MeasuredTable, TableLines, table_lines
 
-#: Temperatures that are computed with the sensors and measured like them, but at no place in the rubber.
-OUTSIDE_THE_RUBBER = ("contained-air", "rim")
 #: A CSV file, a pandas DataFrame with the same columns, a run already read, or several of these.
 Table = Any
 
@@ -29,20 +29,45 @@ class Experiment:
     Parameters
     ----------
     run : the measured histories, on the clock of the simulation.
+    origin : the run's name in its table: effects that act in some runs only are stated with it.
     drive : dotted overrides of the study's drive for this run; empty = the study's own drive.
-    noise : K, standard deviation of a reading; None = the noise of each sensor's card.
+    noise : sensor -> K, standard deviation of a reading; without those of the sensors' cards.
     hold_out : whether no fit may use the run.
     """
 
     run: MeasuredRun
+    origin: str
     drive: Mapping[str, Any] = field(default_factory=dict)
-    noise: float | None = None
+    noise: Mapping[str, float] = field(default_factory=dict)
     hold_out: bool = False
+
+    @classmethod
+    def of(cls, run: MeasuredRun, entry: MeasuredEntryLike | None) -> Experiment:
+        """A run, with the names of the study's sensors, as its entry says; None: a run that the study does not name."""
+        if not run.sensors:
+            raise InputError(f"run '{run.name}': every sensor is ignored", file=run.file)
+        if entry is None:
+            return cls(run, run.name)
+        noise = {} if entry.noise is None else dict.fromkeys(run.sensors, entry.noise)
+        return cls(run, run.name, dict(entry.drive), noise, entry.hold_out)
 
     @property
     def name(self) -> str:
-        """The run's name."""
+        """The name among all runs: that of its table, with a number if others have it too."""
         return self.run.name
+
+    def noise_of(self, sensor: str, study: StudyLike) -> float:
+        """K, standard deviation of a reading of a sensor: that of the entry, else of the sensor's card."""
+        return self.noise.get(sensor, sensor_of(study, sensor).noise)
+
+    def joins(self, other: Experiment) -> bool:
+        """Whether both are one run with two loggers: the same run at the same drive, with different sensors."""
+        same = (self.origin, self.drive, self.hold_out) == (other.origin, other.drive, other.hold_out)
+        return same and set(self.run.sensors).isdisjoint(other.run.sensors)
+
+    def joined(self, other: Experiment) -> Experiment:
+        """This run with the sensors of the other logger."""
+        return replace(self, run=self.run.joined(other.run), noise={**self.noise, **other.noise})
 
 
 def experiments(
@@ -55,7 +80,8 @@ def experiments(
     """The runs to compare with: those of ``table``, or else of the study's ``[[measured]]`` entries.
 
     A run of a given table has the drive, noise, offset and column names of the entry with the same file or run name. A
-    run without an entry is compared with the study's drive.
+    run without an entry is compared with the study's drive. Tables with the same run, at the same drive and with
+    different sensors, are one run.
 
     Parameters
     ----------
@@ -64,75 +90,194 @@ def experiments(
     Raises
     ------
     InputError : no run; an effect is in a run that the study's tables do not have; an entry names a run that is not in
-        the table; a column is no sensor of the study; no table has a column that is to be renamed or ignored.
+        the table, or is that of another entry; a column is no sensor of the study; no table has a column that is to be
+        renamed or ignored.
     """
-    given = ColumnNames(dict(rename or {}), tuple(ignore))
-    entries = list(study.measured) if table is None else []
-    runs: list[MeasuredRun] = []
-    columns: list[str] = []
-    for each in _listed(table):
-        if isinstance(each, MeasuredRun):
-            runs.append(each.renamed(given.rename))
-            columns += each.sensors
-            continue
-        known = [entry for entry in study.measured if _is_file(each, entry.table)]
-        entries += known
-        if not known:
-            measured = _measured_table(each, given)
-            runs += measured.runs
-            columns += [*measured.columns, *measured.headings]
-    at_hand: dict[str, MeasuredTable] = {}
-    tables = [(entry, _table(entry, given, at_hand)) for entry in entries]
-    for entry, measured in tables:
-        columns += [*measured.columns, *measured.headings, *entry.rename.values()]
-    given.require(columns)
-    planned = [experiment for entry, measured in tables for experiment in _of_entry(entry, measured)]
-    planned += [_with_entry(run, study) for run in runs]
+    given = ColumnNames.of(ignore=ignore, rename=rename)
+    reader = _ExperimentReader(study.measured, given)
+    planned = reader.of_entries(study.measured) if table is None else reader.of_tables(table)
+    given.require(reader.columns)
     if not planned:
         raise InputError("there is no measured run to compare with")
-    planned = [_without_columns(experiment, given.ignore) for experiment in planned]
-    _check_sensors([experiment.run for experiment in planned], study)
-    distinct = _with_distinct_names(planned)
+    check_sensors([experiment.run for experiment in planned], study)
+    distinct = _with_distinct_names(_joined(planned))
     if table is None and isinstance(study, StudyData):
-        check_runs(study, [experiment.name for experiment in distinct])
+        check_runs(study, [experiment.origin for experiment in distinct])
     return distinct
 
 
 def driven(study: StudyLike, experiment: Experiment) -> StudyLike:
     """The study at the drive of an experiment, with the effects that act in its run."""
     if acting_in(study, experiment) or (isinstance(study, StudyData) and study.card.run is not None):
-        return cast(StudyData, study).at_run(experiment.name, experiment.drive)
+        return cast(StudyData, study).at_run(experiment.origin, experiment.drive)
     return study.with_drive(dict(experiment.drive)) if experiment.drive else study
 
 
 def acting_in(study: StudyLike, experiment: Experiment) -> tuple[int, ...]:
     """Numbers of the study's effects that act in some runs only, and in that of the experiment."""
     effects = study.card.effects if isinstance(study, StudyData) else ()
-    return tuple(i for i, effect in enumerate(effects) if effect.runs and effect.acts_in(experiment.name))
+    return tuple(i for i, effect in enumerate(effects) if effect.runs and effect.acts_in(experiment.origin))
 
 
-def _listed(table: Table | None) -> Sequence[Any]:
-    """The given tables and runs as a sequence."""
-    if table is None:
-        return ()
-    if isinstance(table, str | Path | MeasuredRun) or is_frame(table):
-        return (table,)
-    if isinstance(table, Sequence):
-        return table
-    raise _no_table(table)
+def _joined(experiments: Sequence[Experiment]) -> list[Experiment]:
+    """The experiments; runs that several loggers recorded have the sensors of all."""
+    result: list[Experiment] = []
+    for experiment in experiments:
+        place = next((i for i, before in enumerate(result) if before.joins(experiment)), None)
+        if place is None:
+            result.append(experiment)
+        else:
+            result[place] = result[place].joined(experiment)
+    return result
 
 
-def _is_file(table: Any, file: str | Path) -> bool:
-    return isinstance(table, str | Path) and Path(table).absolute() == Path(file).absolute()
+def _with_distinct_names(experiments: Sequence[Experiment]) -> tuple[Experiment, ...]:
+    """The experiments with distinct names; two records of the same sensors in one run stay apart."""
+    names: set[str] = {experiment.origin for experiment in experiments}
+    used: set[str] = set()
+    result = []
+    for experiment in experiments:
+        name, number = experiment.origin, 1
+        while name in used or (number > 1 and name in names):
+            number += 1
+            name = f"{experiment.origin} ({number})"
+        used.add(name)
+        result.append(replace(experiment, run=replace(experiment.run, name=name)))
+    return tuple(result)
 
 
-def _measured_table(table: Any, given: ColumnNames) -> MeasuredTable:
-    """The table of a file or a data frame."""
-    if is_frame(table):
-        return frame_table(table, rename=given.rename, ignore=given.ignore)
-    if isinstance(table, str | Path):
-        return read(table, rename=given.rename, ignore=given.ignore)
-    raise _no_table(table)
+class _ExperimentReader:
+    """Reads tables by entries and given names. ``columns``: names and headings of all columns read."""
+
+    def __init__(self, entries: Sequence[MeasuredEntryLike], given: ColumnNames) -> None:
+        self.entries, self.given = entries, given
+        self.columns: list[str] = []
+        self._at_hand: dict[str, MeasuredTable] = {}
+        self._frames = 0
+
+    def of_entries(self, entries: Sequence[MeasuredEntryLike]) -> list[Experiment]:
+        """The runs of entries; one without ``run`` has those runs of its table that no other entry names."""
+        named: dict[Path, list[str | None]] = {}
+        for entry in entries:
+            before = named.setdefault(_path(entry.table), [])
+            if entry.run in before:
+                which = "all runs" if entry.run is None else f"run '{entry.run}'"
+                hint = "; give each entry its 'run'" if entry.run is None else ""
+                raise InputError(f"two entries for {which} of this table{hint}", field="measured.run", file=entry.table)
+            before.append(entry.run)
+        result = []
+        for entry in entries:
+            measured = self._of_entry(entry)
+            names = [run.name for run in measured.runs]
+            if entry.run is not None and entry.run not in names:
+                wrong = f"no run '{entry.run}'{nearest(entry.run, names)}"
+                raise InputError(wrong, field="measured.run", file=entry.table)
+            wanted = {entry.run} if entry.run is not None else {*names} - {*named[_path(entry.table)]}
+            result += [Experiment.of(self._later(run, measured), entry) for run in measured.runs if run.name in wanted]
+        return result
+
+    def of_tables(self, table: Table) -> list[Experiment]:
+        """The runs of one or several tables."""
+        alone = isinstance(table, str | Path | MeasuredRun) or is_frame(table)
+        if not alone and not isinstance(table, Sequence):
+            raise _no_table(table)
+        return [experiment for each in ((table,) if alone else table) for experiment in self._of_table(each)]
+
+    def _of_table(self, table: Any) -> list[Experiment]:
+        """The runs of a file, a frame or a run already read."""
+        if isinstance(table, MeasuredRun):
+            return [self._of_run(table)]
+        if is_frame(table):
+            return self._of_frame(table)
+        if not isinstance(table, str | Path):
+            raise _no_table(table)
+        of_file = [entry for entry in self.entries if _path(entry.table) == _path(table)]
+        return self.of_entries(of_file) if of_file else self._of_other(table_lines(table))
+
+    def _of_entry(self, entry: MeasuredEntryLike) -> MeasuredTable:
+        """The table of an entry, read once; it must have the columns that the entry names."""
+        names = self._names(entry)
+        key = repr((entry.table, entry.time_offset, names))
+        if key not in self._at_hand:
+            self._at_hand[key] = _read(table_lines(entry.table), names, entry)
+        measured = self._at_hand[key]
+        for wanted, purpose in ((entry.rename, "to rename"), (entry.ignore, "to ignore")):
+            missing = measured.missing(wanted)
+            if missing:
+                raise missing_columns_error(missing, purpose, measured.columns, measured.file)
+        self._note(measured, entry)
+        return measured
+
+    def _of_other(self, lines: TableLines) -> list[Experiment]:
+        """The runs of a table of no entry, each read as the entry of its name says."""
+        of_run = {name: self._entry_of(name) for name in lines.runs(self.given.ignore)}
+        result = {}
+        for entry in _distinct(of_run.values()):
+            names = self._names(entry)
+            measured = _read(lines, names, entry)
+            self._note(measured, entry)
+            for run in measured.runs:
+                if of_run.get(run.name) is entry:
+                    result[run.name] = Experiment.of(self._later(run, measured), entry)
+        return [result[name] for name in of_run if name in result]
+
+    def _of_frame(self, frame: Any) -> list[Experiment]:
+        """The runs of a frame; frames whose runs have no names are different runs."""
+        lines = frame_lines(frame)
+        result = self._of_other(lines)
+        nameless = lines.runs(self.given.ignore) == (lines.name,)
+        self._frames += nameless
+        if not nameless or self._frames == 1:
+            return result
+        return [replace(each, origin=f"{lines.name} ({self._frames})") for each in result]
+
+    def _of_run(self, run: MeasuredRun) -> Experiment:
+        """A run already read, as the entry of its name says."""
+        entry = self._entry_of(run.name)
+        names = self._names(entry)
+        known = [*run.sensors, *run.channels, *(parts(heading)[0] for heading in run.channels)]
+        self.columns += [*known, *(entry.rename.values() if entry else ())]
+        shifted = run.shifted(0.0 if entry is None else entry.time_offset)
+        renamed = shifted.without(names.ignore).renamed(names.rename)
+        return Experiment.of(renamed.without(name for name in self.given.ignore if name not in known), entry)
+
+    def _names(self, entry: MeasuredEntryLike | None) -> ColumnNames:
+        """The given names, before those of an entry."""
+        if entry is None:
+            return self.given
+        return ColumnNames({**entry.rename, **self.given.rename}, (*entry.ignore, *self.given.ignore))
+
+    def _entry_of(self, run: str) -> MeasuredEntryLike | None:
+        return next((entry for entry in self.entries if run == (entry.run or Path(entry.table).stem)), None)
+
+    def _later(self, run: MeasuredRun, measured: MeasuredTable) -> MeasuredRun:
+        """The run without sensors that are ignored by their new names."""
+        return run.without(measured.missing(self.given.ignore))
+
+    def _note(self, measured: MeasuredTable, entry: MeasuredEntryLike | None) -> None:
+        self.columns += [*measured.columns, *measured.headings, *(entry.rename.values() if entry else ())]
+
+
+def _read(lines: TableLines, names: ColumnNames, entry: MeasuredEntryLike | None) -> MeasuredTable:
+    offset = 0.0 if entry is None else entry.time_offset
+    return lines.read(time_offset=offset, rename=names.rename, ignore=names.ignore)
+
+
+def _distinct(entries: Iterable[MeasuredEntryLike | None]) -> list[MeasuredEntryLike | None]:
+    """Each entry once; entries with equal content are different entries."""
+    result: list[MeasuredEntryLike | None] = []
+    for entry in entries:
+        if not any(entry is before for before in result):
+            result.append(entry)
+    return result
+
+
+def _path(table: str | Path) -> Path:
+    """A file's path, however it is written; what cannot be a path is refused when it is read."""
+    try:
+        return Path(table).resolve()
+    except (OSError, RuntimeError, ValueError):
+        return Path(table).absolute()
 
 
 def _no_table(table: object) -> InputError:
@@ -140,100 +285,3 @@ def _no_table(table: object) -> InputError:
         f"a value of type {type(table).__name__} is no measured table; allowed: a CSV file's path, a pandas DataFrame "
         "with 'time [s]' and sensors like 'crown [degC]', a MeasuredRun, or a list of these"
     )
-
-
-@dataclass(frozen=True)
-class ColumnNames:
-    """Names for the columns of all tables: ``rename``, column -> sensor, and columns to ``ignore``."""
-
-    rename: Mapping[str, str]
-    ignore: tuple[str, ...]
-
-    def require(self, columns: Sequence[str]) -> None:
-        """Raises InputError for names that no table has."""
-        for names, purpose in ((self.rename, "to rename"), (self.ignore, "to ignore")):
-            missing = [name for name in names if name not in {*columns, *self.rename.values()}]
-            if missing:
-                raise missing_columns_error(missing, purpose, dict.fromkeys(parts(name)[0] for name in columns))
-
-
-def _table(entry: MeasuredEntryLike, given: ColumnNames, at_hand: dict[str, MeasuredTable]) -> MeasuredTable:
-    """The table of an entry, read once; it must have the columns that the entry names."""
-    rename, ignore = {**entry.rename, **given.rename}, (*entry.ignore, *given.ignore)
-    key = repr((entry.table, entry.time_offset, rename, ignore))
-    if key not in at_hand:
-        at_hand[key] = read(entry.table, time_offset=entry.time_offset, rename=rename, ignore=ignore)
-    measured = at_hand[key]
-    for names, purpose in ((entry.rename, "to rename"), (entry.ignore, "to ignore")):
-        missing = measured.missing(names)
-        if missing:
-            raise missing_columns_error(missing, purpose, measured.columns, measured.file)
-    return measured
-
-
-def _of_entry(entry: MeasuredEntryLike, measured: MeasuredTable) -> list[Experiment]:
-    names = [run.name for run in measured.runs]
-    if entry.run is not None and entry.run not in names:
-        wrong = f"no run '{entry.run}'{nearest(entry.run, names)}"
-        raise InputError(wrong, field="measured.run", file=entry.table)
-    return [
-        Experiment(run, dict(entry.drive), entry.noise, entry.hold_out)
-        for run in measured.runs
-        if entry.run in (None, run.name)
-    ]
-
-
-def _with_entry(run: MeasuredRun, study: StudyLike) -> Experiment:
-    for entry in study.measured:
-        if run.name == (entry.run or Path(entry.table).stem):
-            shifted = run.shifted(entry.time_offset).renamed(entry.rename)
-            return _without_columns(
-                Experiment(shifted, dict(entry.drive), entry.noise, entry.hold_out), tuple(entry.ignore)
-            )
-    return Experiment(run)
-
-
-def _without_columns(experiment: Experiment, ignore: tuple[str, ...]) -> Experiment:
-    kept = [sensor for sensor in experiment.run.sensors if sensor not in ignore]
-    if not kept:
-        raise InputError(f"run '{experiment.name}': every sensor is ignored", file=experiment.run.file)
-    return replace(experiment, run=replace(experiment.run, temperatures=experiment.run.temperatures[kept]))
-
-
-def _check_sensors(runs: Sequence[MeasuredRun], study: StudyLike) -> None:
-    """Raises InputError for all columns that are no sensors, and for a sensor's column without a temperature unit."""
-    allowed = {*study.sensors, *OUTSIDE_THE_RUBBER}
-    unknown: dict[str, list[MeasuredRun]] = {}
-    for run in runs:
-        for sensor in run.sensors:
-            if sensor not in allowed:
-                unknown.setdefault(sensor, []).append(run)
-        for heading in run.channels:
-            if parts(heading)[0] in allowed:
-                raise InputError(f"column '{heading}': a sensor's unit is degC, degF or K", file=run.file)
-    if not unknown:
-        return
-    files = {run.file for runs_with in unknown.values() for run in runs_with}
-    file = next(iter(files)) if len(files) == 1 else None
-    names = sorted(path.name for path in files if path is not None)
-    where = f" (in {', '.join(names)})" if len(names) > 1 else ""
-    if len(unknown) == 1:
-        (column,) = unknown
-        wrong = f"column '{column}'{where} is no sensor of study '{study.name}'{nearest(column, allowed)}"
-        raise InputError(f"{wrong}; rename it, or ignore it", file=file)
-    raise InputError(
-        f"columns {quoted(unknown, allowed)}{where} are no sensors of study '{study.name}'; allowed: "
-        f"{', '.join(sorted(allowed))}; rename them, or ignore them",
-        file=file,
-    )
-
-
-def _with_distinct_names(experiments: Sequence[Experiment]) -> tuple[Experiment, ...]:
-    """The experiments with distinct run names; the records of two loggers of one run are two runs."""
-    taken: dict[str, int] = {}
-    result = []
-    for experiment in experiments:
-        taken[experiment.name] = taken.get(experiment.name, 0) + 1
-        name = experiment.name if taken[experiment.name] == 1 else f"{experiment.name} ({taken[experiment.name]})"
-        result.append(replace(experiment, run=replace(experiment.run, name=name)))
-    return tuple(result)

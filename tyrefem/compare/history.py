@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from tyrefem.compare.experiment import Experiment
 from tyrefem.compare.interface import PhaseLike, ResultLike, StudyLike
+from tyrefem.compare.sensors import sensor_of
 from tyrefem.errors import InputError, nearest
 
 Array = NDArray[np.float64]
@@ -92,8 +93,7 @@ def histories(
         used = inside & np.isfinite(readings)
         times = run.times[used]
         computed = at_times(result, sensor, times)
-        card = study.sensors.get(sensor)
-        noise = card.noise if experiment.noise is None and card is not None else experiment.noise
+        card = sensor_of(study, sensor)
         compared.append(
             SensorHistory(
                 run=run.name,
@@ -105,9 +105,9 @@ def histories(
                 phases=phase_names(times, result.phases),
                 gradient=_gradient(result, sensor, times),
                 changes={key: at_times(other, sensor, times) - computed for key, other in perturbed.items()},
-                noise=noise or 0.0,
-                accuracy=card.accuracy if card is not None else 0.0,
-                position_sd=card.position_sd if card is not None else 0.0,
+                noise=experiment.noise_of(sensor, study),
+                accuracy=card.accuracy,
+                position_sd=card.position_sd,
                 numerical=float(np.hypot(study.tolerance, study.numerical_sd)),
             )
         )

@@ -10,7 +10,7 @@ from typing import Any, TypedDict, Unpack
 import numpy as np
 
 from tyrefem.compare.comparison import ComparisonData, comparison_of
-from tyrefem.compare.experiment import ColumnNames, Experiment, Table, acting_in, driven, experiments
+from tyrefem.compare.experiment import Experiment, Table, acting_in, driven, experiments
 from tyrefem.compare.history import histories
 from tyrefem.compare.interface import ResultLike, StudyLike, computed_of
 from tyrefem.compare.omitted import ERROR, columns_note, outside_note, outside_notes, within
@@ -27,6 +27,7 @@ from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
 from tyrefem.inputs.study_plugins import plugin_summary
 from tyrefem.inputs.uncertain_numbers import left_out
+from tyrefem.measured.names import ColumnNames
 from tyrefem.requirements import Requirements
 from tyrefem.simulation.result import ResultData
 from tyrefem.simulation.run import run
@@ -130,7 +131,7 @@ Solved = tuple[dict[Key, ResultLike], ReducedInputCertificate | None, list[str]]
 def _grouped(options: Mapping[str, Any]) -> tuple[ColumnNames, _Judged, _Work]:
     """The keywords of `compare` in groups."""
     given = dict(options)
-    columns = ColumnNames(dict(given.pop("rename", None) or {}), tuple(given.pop("ignore", ())))
+    columns = ColumnNames.of(ignore=given.pop("ignore", ()), rename=given.pop("rename", None))
     judged = {name: given.pop(name) for name in ("inputs", "k") if name in given}
     return columns, _Judged(**judged), _Work(**given)
 
@@ -291,8 +292,7 @@ def _uncertainty_notes(study: StudyLike, planned: Sequence[Experiment], inputs: 
         sensor: None
         for experiment in planned
         for sensor in experiment.run.sensors
-        if not experiment.noise
-        and (experiment.noise is not None or not getattr(study.sensors.get(sensor), "noise", 0.0))
+        if not experiment.noise_of(sensor, study)
     }
     if silent:
         notes.append(f"Note: no measurement noise is stated for {', '.join(silent)}")

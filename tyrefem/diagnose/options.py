@@ -7,7 +7,6 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, TypedDict
 
-from tyrefem.compare.experiment import ColumnNames
 from tyrefem.diagnose.data.sensitivities import Tick
 from tyrefem.diagnose.fitting.criterion import Criterion, LogEvidence
 from tyrefem.diagnose.fitting.exhaustive import Exhaustive
@@ -19,6 +18,7 @@ from tyrefem.diagnose.forward.strain_law_study import mesh_of_law
 from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
 from tyrefem.diagnose.unknowns.candidates import CandidateSpace, catalogue_candidates
 from tyrefem.effects import use_effects
+from tyrefem.measured.names import ColumnNames
 
 #: Name on the command line -> strategy.
 STRATEGIES: Mapping[str, Strategy] = {"forward": ForwardSelection(), "exhaustive": Exhaustive()}
@@ -109,7 +109,7 @@ def grouped(options: Mapping[str, Any]) -> tuple[ColumnNames, Method, Simulation
     given = dict(options)
     if (folder := given.pop("effects", None)) is not None:
         use_effects(folder)
-    columns = ColumnNames(dict(given.pop("rename", None) or {}), tuple(given.pop("ignore", ())))
+    columns = ColumnNames.of(ignore=given.pop("ignore", ()), rename=given.pop("rename", None))
     settings = given.pop("settings", DiagnosisSettings())
     settings = replace(settings, **{name: given.pop(name) for name in ("largest", "looks", "reduced") if name in given})
     parts = {name: given.pop(name) for name in ("candidates", "criterion", "strategy") if name in given}

@@ -10,7 +10,7 @@ from functools import partial
 from typing import Any, Unpack
 
 from tyrefem.brief import Brief
-from tyrefem.compare.experiment import ColumnNames, Table, experiments
+from tyrefem.compare.experiment import Table, experiments
 from tyrefem.compare.omitted import ERROR, columns_note, outside_notes
 from tyrefem.diagnose.amend import Change, amended, changes
 from tyrefem.diagnose.beside.best_fit import fit_beside, not_asked_for
@@ -73,6 +73,7 @@ from tyrefem.diagnose.verdicts.verdict import (
 )
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
+from tyrefem.measured.names import ColumnNames
 from tyrefem.requirements import Requirements
 from tyrefem.threads import one_thread
 
@@ -280,7 +281,7 @@ def _in_single_runs(
     """The candidates that depend on the day, each in one of the fitted runs."""
     if not settings.odd_run_share:
         return ()
-    return in_single_runs(study, candidates, [run.name for run in runs if not run.hold_out])
+    return in_single_runs(study, candidates, list(dict.fromkeys(run.run for run in runs if not run.hold_out)))
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from tyrefem.errors import InputError
-from tyrefem.measured.columns import is_time
-from tyrefem.measured.lines import decode
+from tyrefem.measured.columns import is_time, parts
+from tyrefem.measured.lines import DELIMITERS, LONGEST_PREAMBLE, decode
 
 _HEADING = re.compile(r"^\s*([^\[\]]+?)\s*(?:\[([^\[\]]*)\])?\s*$")
 #: Columns for people, not values of the study.
@@ -64,10 +64,19 @@ def read_cases(path: Path) -> tuple[Case, ...]:
 
 
 def looks_like_cases(path: Path) -> bool:
-    """True if the first row of a CSV file is the heading of a table of cases, not of thermocouple histories."""
-    lines = _content(path)
-    cells = [cell.strip() for cell in lines[0][1].split(",")] if lines else []
-    return "name" in cells and not any(is_time(cell) for cell in cells)
+    """True if the first row of a CSV file is the heading of a table of cases, not of thermocouple histories.
+
+    A logger's file may begin with lines such as "name,Lab 3"; its heading, with a time and units, follows.
+    """
+    lines = [line for _, line in _content(path)[:LONGEST_PREAMBLE]]
+    cells = [cell.strip(' "') for cell in lines[0].split(",")] if lines else []
+    return "name" in cells and not any(_is_of_histories(line) for line in lines)
+
+
+def _is_of_histories(line: str) -> bool:
+    """Whether a line is the heading of thermocouple histories: a time, and a unit in any column."""
+    rows = ([cell.strip(' "') for cell in line.split(delimiter)] for delimiter in DELIMITERS)
+    return any(any(map(is_time, cells)) and any(parts(cell)[1] for cell in cells) for cells in rows)
 
 
 def _content(path: Path) -> list[tuple[int, str]]:

@@ -54,7 +54,7 @@ class Heading:
         """
         if self.unit == "degF":
             return (values - 32.0) / 1.8
-        return values - 273.15 if self.unit == "K" else values
+        return values + ABSOLUTE_ZERO if self.unit == "K" else values
 
 
 def parts(text: str) -> tuple[str, str | None]:
@@ -103,19 +103,26 @@ def _temperature(unit: str) -> str | None:
     return _LETTERS.get(match[1].lower()) if match else None
 
 
-def time_unit(text: str) -> str:
-    """The unit of the time column.
+def time_unit(text: str, first: str = "") -> str:
+    """The unit of the time column, whose first cell is no timestamp.
 
     Raises
     ------
     InputError : no unit, or one that is not a time.
     """
     unit = parts(text)[1]
+    if not unit and first and _NUMBER.fullmatch(first) is None:
+        raise InputError(
+            f"'{text}' begins with {first[:40]!r}, which is no timestamp like 2024-05-01T12:30:01 (date and time in "
+            "one column); write all times so, or as numbers with a unit: 'time [s]'"
+        )
     if not unit:
         raise InputError(
             f"'{text}' has no unit; write 'time [s]' (or [min], [h], [ms]), or timestamps like 2024-05-01T12:30:01"
         )
     known = _SPELLINGS.get(unit.lower())
+    if unit.lower() == "m":
+        raise InputError(f"time unit '{unit}': write 'min' for minutes; allowed: {', '.join(TIME_UNITS)}")
     if known is None:
         raise InputError(f"unknown time unit '{unit[:30]}'{nearest(unit, TIME_UNITS)}")
     return known
@@ -145,8 +152,10 @@ def temperature_unit(text: str) -> str:
 NO_READING = frozenset(("", "nan", "na", "n/a", "#n/a", "null", "none", "-", "--", "---"))
 
 
-#: degC; higher values are the code of an open thermocouple.
-HOTTEST = 2000.0
+#: degC; range of readings at a tyre. No air at the ground was colder than -89 degC, and a brake disc glows at 900 degC;
+#: rubber chars at half of that. Loggers write codes beyond it (-200, 999.9, 1372, 9999) for an open thermocouple.
+COLDEST, HOTTEST = -90.0, 900.0
+ABSOLUTE_ZERO = -273.15
 _NUMBER = re.compile(r"[-+]?(?:\d+[.,]?\d*|[.,]\d+)(?:[eE][-+]?\d+)?", re.ASCII)
 _PLAIN = re.compile(r"[0-9.eE+\-\n]*")
 
@@ -227,17 +236,23 @@ def check_decimal_mark(rows: Sequence[Sequence[str]], lines: Sequence[int], colu
 
 
 def check_plausible(heading: Heading, degC: NDArray[np.float64], lines: Sequence[int], file: Path) -> None:
-    """Raise an error for readings that no thermocouple in a tyre can have.
+    """Raise an error for readings that no thermocouple at a tyre can have.
 
     Raises
     ------
-    InputError : below absolute zero, or above 2000 degC; the message has line and column.
+    InputError : below `COLDEST` or above `HOTTEST`; the message has line, column and value.
     """
-    for index in np.flatnonzero((degC < -273.15 - 1e-9) | (degC > HOTTEST))[:1]:
-        cold = degC[index] < 0.0
-        wrong = "is below absolute zero" if cold else f"is above {HOTTEST:g} degC (an open thermocouple?)"
-        place = _place(lines[index], f"{heading.name} [{heading.unit}]")
-        raise InputError(
-            f"{place}: {degC[index]:g} degC {wrong}; leave the cell empty where there is no reading",
-            file=file,
-        )
+    for index in np.flatnonzero((degC < COLDEST - 1e-9) | (degC > HOTTEST + 1e-9))[:1]:
+        value, place = degC[index], _place(lines[index], f"{heading.name} [{heading.unit}]")
+        raise InputError(f"{place}: {value:g} degC {_why_implausible(heading, value)}", file=file)
+
+
+def _why_implausible(heading: Heading, degC: float) -> str:
+    """What is wrong with a reading, and what to do."""
+    written = degC - ABSOLUTE_ZERO
+    if heading.unit == "K" and degC < COLDEST and COLDEST <= written <= HOTTEST:
+        return f"({written:g} K) is too cold; K is kelvin: a thermocouple of type K is written '{heading.name} [degC]'"
+    what = f"is above {HOTTEST:g} degC (an open thermocouple?)"
+    if degC < COLDEST:
+        what = "is below absolute zero" if degC < ABSOLUTE_ZERO else f"is below {COLDEST:g} degC"
+    return f"{what}; leave the cell empty where there is no reading, or ignore the column"

@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Iterable, Mapping
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tyrefem.errors import InputError
 from tyrefem.measured.columns import is_time, parts
-from tyrefem.measured.table import MeasuredTable, read
+from tyrefem.measured.lines import split
+from tyrefem.measured.table import TableLines
 
 if TYPE_CHECKING:
     import pandas as pd
 
 #: Name of the frame in errors. Line numbers are those of the frame written as CSV.
 PLACE = Path("DataFrame (line 1: its column names)")
+#: Timestamps as they are written, with the offset from UTC, if any: clocks that are put back repeat an hour.
+STAMP = "%Y-%m-%dT%H:%M:%S.%f%z"
 
 
 def is_frame(table: object) -> bool:
@@ -24,39 +25,44 @@ def is_frame(table: object) -> bool:
     return hasattr(table, "to_csv") and hasattr(table, "columns")
 
 
-def frame_table(
-    frame: pd.DataFrame, *, rename: Mapping[str, str] | None = None, ignore: Iterable[str] = ()
-) -> MeasuredTable:
-    """The runs of a frame with the columns of a file: ``time [s]`` (or the index so named), perhaps ``run``, sensors.
+def frame_lines(frame: pd.DataFrame) -> TableLines:
+    """The rows of a frame with the columns of a file: ``time [s]`` (or the index so named), perhaps ``run``, sensors.
 
-    A result's `readings` have this form. A frame without a column ``run`` is one run, "measured". Options and errors:
-    see `tyrefem.measured.read_table`.
+    A result's `readings` have this form. A frame without a column ``run`` is one run, "measured".
 
     >>> import pandas as pd
-    >>> run, = frame_table(pd.DataFrame({"time [min]": [0, 1, 2], "crown [degF]": [77.0, None, 95.0]})).runs
+    >>> frame = pd.DataFrame({"time [min]": [0, 1, 2], "crown [degF]": [77.0, None, 95.0]})
+    >>> run, = frame_lines(frame).read().runs
     >>> run.name, run.times.tolist(), run.temperatures["crown"].tolist()
     ('measured', [0.0, 60.0, 120.0], [25.0, nan, 35.0])
     """
     with tempfile.TemporaryDirectory(prefix="tyrefem-") as folder:
         # It is read like a file, so that a frame and a file follow the same rules.
         file = Path(folder) / "measured.csv"
-        _flat(frame).to_csv(file, index=False, lineterminator="\n", date_format="%Y-%m-%dT%H:%M:%S.%f")
+        _flat(frame).to_csv(file, index=False, lineterminator="\n", date_format=STAMP)
         try:
-            table = read(file, rename=rename, ignore=ignore)
+            lines = split(file)
         except InputError as error:
             raise InputError(error.message, field=error.field, file=PLACE) from None
-    return replace(table, file=PLACE, runs=tuple(replace(run, file=None) for run in table.runs))
+    return TableLines(lines, PLACE, file.stem, in_memory=True)
 
 
 def _flat(frame: pd.DataFrame) -> pd.DataFrame:
     """The frame with time or run from its index as a column; a result's `readings` get their units."""
     if frame.columns.nlevels > 1:
         raise InputError("its columns have several levels; wanted: one name each, like 'crown [degC]'", file=PLACE)
-    levels = [name for name in frame.index.names if isinstance(name, str) and (is_time(name) or name.lower() == "run")]
-    flat = frame.reset_index(levels) if levels else frame
+    levels = {name: level for level, name in enumerate(frame.index.names) if _is_needed(name)}
+    # `set_index(..., drop=False)` keeps the column beside the index.
+    missing = [level for name, level in levels.items() if name not in frame.columns]
+    flat = frame.reset_index(missing) if missing else frame
     if "time_s" not in flat.columns:
         return flat
     return flat.rename(columns=lambda name: "time [s]" if name == "time_s" else _in_degC(str(name)))
+
+
+def _is_needed(name: object) -> bool:
+    """Whether a level of the index is a time or the run."""
+    return isinstance(name, str) and (is_time(name) or name == "time_s" or name.lower() == "run")
 
 
 def _in_degC(name: str) -> str:

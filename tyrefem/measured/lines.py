@@ -124,7 +124,9 @@ def _rows(
         if len(cells) > width and not any(cells[width:]):
             cells = cells[:width]
         if len(cells) != width:
-            hint = " (decimal commas need ';' between the columns)" if delimiter == "," else ""
+            hint = " (a cell without a reading is empty, not left out)"
+            if len(cells) > width:
+                hint = " (decimal commas need ';' between the columns)" if delimiter == "," else ""
             raise InputError(f"line {number}: {len(cells)} cells, but the heading has {width}{hint}", file=path)
         rows.append(cells)
         numbers.append(number)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.errors import InputError
+from tyrefem.measured.columns import parts
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -58,6 +59,35 @@ class MeasuredRun:
         if twice is not None:
             raise InputError(f"run '{self.name}': two columns for sensor '{twice}'", field="rename", file=self.file)
         return replace(self, temperatures=self.temperatures.set_axis(new, axis="columns"))
+
+    def without(self, names: Iterable[str]) -> MeasuredRun:
+        """The same run without some columns, of sensors or other quantities; others are not needed."""
+        left_out = set(names)
+        kept = [sensor for sensor in self.sensors if sensor not in left_out]
+        channels = tuple(text for text in self.channels if not {text, parts(text)[0]} & left_out)
+        return replace(self, temperatures=self.temperatures[kept], channels=channels)
+
+    def joined(self, other: MeasuredRun) -> MeasuredRun:
+        """This run with the sensors of another logger, at the times of both; they have no sensor in common.
+
+        >>> import pandas as pd
+        >>> first = MeasuredRun("heat", np.array([0.0, 2.0]), pd.DataFrame({"crown": [25.0, 26.0]}))
+        >>> both = first.joined(MeasuredRun("heat", np.array([1.0, 2.0]), pd.DataFrame({"bead": [20.0, 21.0]})))
+        >>> both.times.tolist(), both.temperatures["bead"].tolist()
+        ([0.0, 1.0, 2.0], [nan, 20.0, 21.0])
+        """
+        import pandas as pd
+
+        times = np.union1d(self.times, other.times)
+        sides = [run.temperatures.set_axis(run.times, axis="index").reindex(times) for run in (self, other)]
+        return replace(
+            self,
+            times=times,
+            temperatures=pd.concat(sides, axis="columns").reset_index(drop=True),
+            file=self.file if self.file == other.file else None,
+            comments=(*self.comments, *other.comments),
+            channels=tuple(dict.fromkeys((*self.channels, *other.channels))),
+        )
 
     def write(self, path: str | Path) -> Path:
         """Write as a table that `read_table` reads back, to the last bit.

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.errors import InputError, nearest, quoted
+from tyrefem.errors import InputError
 from tyrefem.measured.columns import (
     TIME_UNITS,
     Heading,
@@ -23,6 +23,7 @@ from tyrefem.measured.columns import (
     time_unit,
 )
 from tyrefem.measured.lines import Lines, split
+from tyrefem.measured.names import ColumnNames, missing_columns_error
 from tyrefem.measured.run import MeasuredRun
 from tyrefem.measured.timestamps import are_timestamps, microseconds
 
@@ -60,7 +61,8 @@ def read_table(
 
     Raises
     ------
-    InputError : unclear content, with file, line and column; an unknown column to rename.
+    InputError : unclear content, with file, line and column; an unknown column to rename; ``ignore`` or ``rename`` of
+        another form.
 
     >>> import tempfile
     >>> file = Path(tempfile.mkdtemp()) / "run-1.csv"
@@ -69,9 +71,9 @@ def read_table(
     >>> run.name, run.times.tolist(), run.temperatures["crown"].tolist()
     ('run-1', [0.0, 60.0, 120.0], [25.0, nan, 35.0])
     """
-    given = dict(rename or {})
-    table = read(path, time_offset=time_offset, rename=given, ignore=ignore)
-    missing = table.missing(given)
+    names = ColumnNames.of(ignore=ignore, rename=rename)
+    table = table_lines(path).read(time_offset=time_offset, rename=names.rename, ignore=names.ignore)
+    missing = table.missing(names.rename)
     if missing:
         raise missing_columns_error(missing, "to rename", table.columns, table.file)
     return table.runs
@@ -95,48 +97,67 @@ class MeasuredTable:
         return [name for name in names if name not in self.columns and name not in self.headings]
 
 
-def read(
-    path: str | Path,
-    *,
-    time_offset: float = 0.0,
-    rename: Mapping[str, str] | None = None,
-    ignore: Iterable[str] = (),
-) -> MeasuredTable:
-    """`read_table` for a caller that checks the names of ``rename`` and ``ignore`` itself."""
-    import pandas as pd
+@dataclass(frozen=True, eq=False)
+class TableLines:
+    """The rows of a table whose columns are not yet read.
 
+    Parameters
+    ----------
+    lines : heading and rows. file : the table in errors. name : of the run of a table without a run column.
+    in_memory : whether the table is no file.
+    """
+
+    lines: Lines
+    file: Path
+    name: str
+    in_memory: bool = False
+
+    def runs(self, ignore: Iterable[str] = ()) -> tuple[str, ...]:
+        """Names of the runs, if no more than one column has them."""
+        without = frozenset(ignore)
+        columns = [column for column, text in enumerate(self.lines.heading) if _is_run(text, without)]
+        return tuple(dict.fromkeys(row[columns[0]] for row in self.lines.rows)) if columns else (self.name,)
+
+    def read(
+        self, *, time_offset: float = 0.0, rename: Mapping[str, str] | None = None, ignore: Iterable[str] = ()
+    ) -> MeasuredTable:
+        """The runs; arguments and errors as of `read_table`, without the check that the columns to rename exist."""
+        import pandas as pd
+
+        lines, file = self.lines, self.file
+        if not np.isfinite(time_offset):
+            raise InputError(f"{time_offset!r} is not a finite number of seconds", field="time_offset", file=file)
+        columns = _columns(lines, dict(rename or {}), frozenset(ignore), file)
+        if not lines.rows:
+            raise InputError("has a heading but no readings", file=file)
+        time, sensors = columns.time, columns.sensors
+        check_decimal_mark(lines.rows, lines.numbers, [time.column, *(sensor.column for sensor in sensors)], file)
+        cells = list(zip(*lines.rows, strict=True))
+        readings = {sensor.name: _readings(sensor, cells[sensor.column], lines, file) for sensor in sensors}
+        runs = []
+        rows_of_runs = _rows_of_runs(None if columns.run is None else cells[columns.run], lines, file, self.name)
+        source = None if self.in_memory else file
+        for name, times in _times(cells[time.column], lines, time, rows_of_runs, time_offset, file).items():
+            rows = rows_of_runs[name]
+            _increasing(times, [lines.numbers[row] for row in rows], name, file)
+            held = {sensor: values[rows] for sensor, values in readings.items() if np.isfinite(values[rows]).any()}
+            if not held:
+                raise InputError(f"run '{name}' has no reading at all", file=file)
+            times.flags.writeable = False
+            runs.append(MeasuredRun(name, times, pd.DataFrame(held), source, lines.comments, columns.channels))
+        return MeasuredTable(file, tuple(runs), lines.heading)
+
+
+def table_lines(path: str | Path) -> TableLines:
+    """The rows of a file."""
     file = Path(path)
-    if not np.isfinite(time_offset):
-        raise InputError(f"{time_offset!r} is not a finite number of seconds", field="time_offset", file=file)
-    lines = split(file)
-    columns = _columns(lines, dict(rename or {}), frozenset(ignore), file)
-    if not lines.rows:
-        raise InputError("has a heading but no readings", file=file)
-    time, sensors = columns.time, columns.sensors
-    check_decimal_mark(lines.rows, lines.numbers, [time.column, *(sensor.column for sensor in sensors)], file)
-    cells = list(zip(*lines.rows, strict=True))
-    readings = {sensor.name: _readings(sensor, cells[sensor.column], lines, file) for sensor in sensors}
-    runs = []
-    rows_of_runs = _rows_of_runs(None if columns.run is None else cells[columns.run], lines, file)
-    for name, times in _times(cells[time.column], lines, time, rows_of_runs, time_offset, file).items():
-        rows = rows_of_runs[name]
-        _increasing(times, [lines.numbers[row] for row in rows], name, file)
-        held = {sensor: values[rows] for sensor, values in readings.items() if np.isfinite(values[rows]).any()}
-        if not held:
-            raise InputError(f"run '{name}' has no reading at all", file=file)
-        times.flags.writeable = False
-        runs.append(MeasuredRun(name, times, pd.DataFrame(held), file, lines.comments, columns.channels))
-    return MeasuredTable(file, tuple(runs), lines.heading)
+    return TableLines(split(file), file, file.stem)
 
 
-def missing_columns_error(
-    names: Iterable[str], purpose: str, columns: Iterable[str], file: Path | None = None
-) -> InputError:
-    """The error for missing columns: all of them, each with the nearest name."""
-    missing, known = list(names), list(columns)
-    if len(missing) == 1:
-        return InputError(f"no column '{missing[0]}' {purpose}{nearest(missing[0], known)}", file=file)
-    return InputError(f"no columns {quoted(missing, known)} {purpose}; allowed: {', '.join(known)}", file=file)
+def _is_run(text: str, ignore: frozenset[str]) -> bool:
+    """Whether a heading is that of the run column."""
+    name = parts(text)[0]
+    return name.lower() == "run" and not {text, name} & ignore
 
 
 @dataclass(frozen=True)
@@ -163,10 +184,11 @@ def _columns(lines: Lines, rename: dict[str, str], ignore: frozenset[str], file:
             if is_time(text):
                 if time is not None:
                     raise InputError(f"two time columns, {time.column + 1} and {column + 1}")
-                stamped = are_timestamps([row[column] for row in lines.rows[:100]])
-                time = Heading(name, STAMPED if stamped else time_unit(text), column)
+                cells = [row[column] for row in lines.rows[:100]]
+                unit = STAMPED if are_timestamps(cells) else time_unit(text, next(filter(None, cells), ""))
+                time = Heading(name, unit, column)
                 continue
-            if name.lower() == "run":
+            if _is_run(text, ignore):
                 if run is not None:
                     raise InputError(f"two run columns, {run + 1} and {column + 1}")
                 run = column
@@ -193,7 +215,7 @@ def _columns(lines: Lines, rename: dict[str, str], ignore: frozenset[str], file:
         wrong = [line for line in wrong if "has no unit" not in line]
         wrong.append(f"{names} have no unit; write '{without_unit[0][:40]} [degC]' (or [degF], [K])")
     if wrong:
-        raise InputError(where + "; ".join(wrong), file=file)
+        raise InputError(f"{where}{'; '.join(wrong)}; columns of other quantities need `ignore`", file=file)
     if time is None:
         raise InputError(f"{where}the time column is ignored; it is needed", file=file)
     if not sensors:
@@ -228,10 +250,10 @@ def _readings(heading: Heading, cells: Sequence[str], lines: Lines, file: Path) 
     return degC
 
 
-def _rows_of_runs(cells: Sequence[str] | None, lines: Lines, file: Path) -> dict[str, NDArray[np.intp]]:
-    """Run -> its rows; a table without a run column is one run with the name of the file."""
+def _rows_of_runs(cells: Sequence[str] | None, lines: Lines, file: Path, only: str) -> dict[str, NDArray[np.intp]]:
+    """Run -> its rows; a table without a run column is one run, ``only``."""
     if cells is None:
-        return {file.stem: np.arange(len(lines.rows))}
+        return {only: np.arange(len(lines.rows))}
     rows_of: dict[str, list[int]] = {}
     for row, (cell, line) in enumerate(zip(cells, lines.numbers, strict=True)):
         if not cell:

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
-from tyrefem.compare.experiment import OUTSIDE_THE_RUBBER
+from tyrefem.compare.sensors import OUTSIDE_THE_RUBBER
 from tyrefem.diagnose.forward.strain_law_study import by_law
 from tyrefem.diagnose.layout.isolability import candidates_of
 from tyrefem.diagnose.settings import DiagnosisSettings

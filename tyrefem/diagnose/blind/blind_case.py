@@ -193,7 +193,7 @@ def measured(
     runs = []
     for number, drive in enumerate(planned(study)):
         rng = np.random.default_rng([case.seed, case.number + 1, number + 1])
-        driven = study.at_run(drive.name, drive.drive)
+        driven = study.at_run(drive.run, drive.drive)
         # The values are factors, so a load error of 2 % acts on the load of every run.
         hidden = with_values(driven, case.values)
         if model is None:

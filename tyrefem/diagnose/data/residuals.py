@@ -84,7 +84,7 @@ class Residuals(Brief):
 
     def driven(self, number: int) -> StudyData:
         """The study at the drive of a run, with the effects that act in it."""
-        return self.study.at_run(self.runs[number].name, self.runs[number].drive)
+        return self.study.at_run(self.runs[number].run, self.runs[number].drive)
 
     @cached_property
     def _start(self) -> tuple[float, ...]:

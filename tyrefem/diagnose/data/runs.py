@@ -54,7 +54,7 @@ class MeasuredDrive(DriveSampling):
     def sampling(self) -> DriveSampling:
         """The drive and the sampling of the run, without the readings."""
         sensors = tuple(readings.sampling for readings in self.sensors)
-        return DriveSampling(self.name, self.drive, self.hold_out, sensors)
+        return DriveSampling(self.name, self.drive, self.hold_out, sensors, origin=self.origin)
 
 
 def drive_of_means(sampling: DriveSampling, means: Array) -> MeasuredDrive:
@@ -64,7 +64,7 @@ def drive_of_means(sampling: DriveSampling, means: Array) -> MeasuredDrive:
         measured = np.repeat(means[place], readings.sizes.astype(int))
         stated = {each.name: getattr(readings, each.name) for each in fields(SensorSampling)}
         sensors.append(MeasuredSensor(**stated, measured=measured))
-    return MeasuredDrive(sampling.name, sampling.drive, sampling.hold_out, tuple(sensors))
+    return MeasuredDrive(sampling.name, sampling.drive, sampling.hold_out, tuple(sensors), origin=sampling.origin)
 
 
 def measured_drive(experiment: Experiment, study: StudyData, settings: DiagnosisSettings = DEFAULT) -> MeasuredDrive:
@@ -77,12 +77,12 @@ def measured_drive(experiment: Experiment, study: StudyData, settings: Diagnosis
         used = np.isfinite(values) & in_drive
         if not used.any():
             continue
-        card = study.sensors.get(sensor)
-        stated = experiment.noise or (card.noise if card is not None else 0.5)
+        stated = experiment.noise_of(sensor, study)
         correlated = choice.discrepancy, choice.correlation_time
         times, measured = run.times[used], values[used]
         sensors.append(MeasuredSensor(sensor, times, stated, *correlated, settings.blocks, measured=measured))
-    return MeasuredDrive(experiment.name, dict(experiment.drive), experiment.hold_out, tuple(sensors))
+    drive = dict(experiment.drive)
+    return MeasuredDrive(experiment.name, drive, experiment.hold_out, tuple(sensors), origin=experiment.origin)
 
 
 def with_noise_of_data(

@@ -77,7 +77,7 @@ class Sensitivities(Brief):
         columns = [self.unknowns.index(unknown.everywhere) for unknown in unknowns]
         jacobians = []
         for drive, J in zip(self.drives, self.jacobians, strict=True):
-            acts = np.array([unknown.acts_in(drive.name) for unknown in unknowns], dtype=bool)
+            acts = np.array([unknown.acts_in(drive.run) for unknown in unknowns], dtype=bool)
             jacobians.append(np.hstack([J, np.where(acts, J[:, columns], 0.0)]))
         return replace(self, unknowns=(*self.unknowns, *unknowns), jacobians=tuple(jacobians))
 
@@ -142,7 +142,7 @@ def shared_responses(
     if evaluations.store is not None:
         return responses(evaluations, unknowns, tick)
     model = evaluations.model
-    drives = tuple((drive.name, repr(drive.drive)) for drive in model.drives)
+    drives = tuple((drive.run, repr(drive.drive)) for drive in model.drives)
     key = study_digest(model.study), drives, model.settings.of_simulations, unknowns
     return _RESPONSES.get(key, lambda: responses(evaluations, unknowns, tick))
 

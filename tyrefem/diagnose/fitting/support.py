@@ -118,7 +118,7 @@ def _place(member: Candidate) -> str:
 def _groups(residuals: Residuals) -> list[tuple[str, str, Rows]]:
     """(kind, name, rows that are kept) of every sensor and of every fitted run; none if nothing else is left."""
     runs = [residuals.runs[number] for number in residuals.fitted]
-    labels = [(run.name, readings.sensor) for run in runs for readings in run.sensors for _ in readings.starts]
+    labels = [(run.run, readings.sensor) for run in runs for readings in run.sensors for _ in readings.starts]
     of_runs, of_sensors = (np.array(part) for part in zip(*labels, strict=True))
     groups = [(SENSOR, str(name), of_sensors != name) for name in dict.fromkeys(of_sensors)]
     groups += [(RUN, str(name), of_runs != name) for name in dict.fromkeys(of_runs)]

@@ -61,7 +61,7 @@ def key_of(model: ForwardModel) -> str:
     False
     """
     drives = [
-        [each.name, each.drive, each.hold_out, [_times(sensor) for sensor in each.sensors]] for each in model.drives
+        [each.run, each.drive, each.hold_out, [_times(sensor) for sensor in each.sensors]] for each in model.drives
     ]
     return digest(
         [versions(), effects_source(), plain(model.study), jsonable(drives), repr(model.settings.of_simulations)]

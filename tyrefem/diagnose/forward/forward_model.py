@@ -142,7 +142,7 @@ class ForwardModel(Brief):
 
     def driven(self, study: StudyData, number: int) -> StudyData:
         """The study at the drive of a run."""
-        return study.at_run(self.drives[number].name, self.drives[number].drive)
+        return study.at_run(self.drives[number].run, self.drives[number].drive)
 
     def base(self, number: int) -> FixedStepRun:
         """The coarse study simulated at a drive."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -84,12 +84,21 @@ class SensorSampling(Brief):
 
 @dataclass(frozen=True, eq=False)
 class DriveSampling(Brief):
-    """The drive of a measured run and the sampling of its sensors, as the forward model needs them."""
+    """The drive of a measured run and the sampling of its sensors, as the forward model needs them.
+
+    ``origin``: the run's name in its table, if ``name`` has a number beside it.
+    """
 
     name: str
     drive: dict[str, object]
     hold_out: bool
     sensors: tuple[SensorSampling, ...]
+    origin: str = field(default="", kw_only=True)
+
+    @property
+    def run(self) -> str:
+        """The measured run, as effects that act in some runs only name it."""
+        return self.origin or self.name
 
     @property
     def size(self) -> int:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.compare.experiment import OUTSIDE_THE_RUBBER
+from tyrefem.compare.sensors import OUTSIDE_THE_RUBBER
 from tyrefem.diagnose.data.sensitivities import Sensitivities, responses, sensitivities, unknowns_of
 from tyrefem.diagnose.forward.effort import SENSITIVITIES, check_effort
 from tyrefem.diagnose.forward.evaluations import Evaluations, ProgressStore, evaluating

@@ -236,7 +236,7 @@ def competing(
 ) -> tuple[Members, Sensitivities]:
     """The candidates that a diagnosis of planned runs would have, and sensitivities to them."""
     everywhere = catalogue_candidates(study)
-    runs = [known.drives[number].name for number in known.fitted]
+    runs = list(dict.fromkeys(known.drives[number].run for number in known.fitted))
     in_one_run = in_single_runs(study, everywhere, runs) if settings.odd_run_share else ()
     of_single_runs = [unknown for each in in_one_run for unknown in (*each.amplitudes, *each.presence)]
     known = known.in_single_runs(of_single_runs)

@@ -81,5 +81,5 @@ def _named(left: LeftOut) -> str:
 
 
 def _where(place: str, d: DiagnosisData) -> str:
-    runs = {run.name for run in d.gap.runs}
+    runs = {run.run for run in d.gap.runs}
     return f"in {run_words(place)}" if place in runs else f"at {place}"

@@ -1,0 +1,57 @@
+"""Names that a user gives for the columns of tables: columns to rename, columns to leave out."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from tyrefem.errors import InputError, nearest, quoted
+from tyrefem.measured.columns import parts
+
+
+@dataclass(frozen=True)
+class ColumnNames:
+    """Names for the columns of all tables: ``rename``, column -> sensor, and columns to ``ignore``."""
+
+    rename: Mapping[str, str]
+    ignore: tuple[str, ...]
+
+    @classmethod
+    def of(cls, *, ignore: Any = (), rename: Any = None) -> ColumnNames:
+        """The names as a user of Python gives them; a text in ``ignore`` is one column.
+
+        Raises
+        ------
+        InputError : ``ignore`` is not one or several texts, or ``rename`` has not a text for each text.
+
+        >>> ColumnNames.of(ignore="room", rename={"T1": "crown"})
+        ColumnNames(rename={'T1': 'crown'}, ignore=('room',))
+        """
+        columns = (ignore,) if isinstance(ignore, str) else ignore
+        columns = tuple(columns) if isinstance(columns, Iterable) else (columns,)
+        if not all(isinstance(name, str) for name in columns):
+            raise InputError(f"must be a column's name, or a list of them, not {ignore!r:.60}", field="ignore")
+        names = {} if rename is None else rename
+        if not isinstance(names, Mapping) or not all(isinstance(text, str) for pair in names.items() for text in pair):
+            message = f"must give columns their sensors, like {{'T1': 'crown'}}, not {rename!r:.60}"
+            raise InputError(message, field="rename")
+        return cls(dict(names), columns)
+
+    def require(self, columns: Sequence[str]) -> None:
+        """Raises InputError for names that no table has."""
+        for names, purpose in ((self.rename, "to rename"), (self.ignore, "to ignore")):
+            missing = [name for name in names if name not in {*columns, *self.rename.values()}]
+            if missing:
+                raise missing_columns_error(missing, purpose, dict.fromkeys(parts(name)[0] for name in columns))
+
+
+def missing_columns_error(
+    names: Iterable[str], purpose: str, columns: Iterable[str], file: Path | None = None
+) -> InputError:
+    """The error for missing columns: all of them, each with the nearest name."""
+    missing, known = list(names), list(columns)
+    if len(missing) == 1:
+        return InputError(f"no column '{missing[0]}' {purpose}{nearest(missing[0], known)}", file=file)
+    return InputError(f"no columns {quoted(missing, known)} {purpose}; allowed: {', '.join(known)}", file=file)
