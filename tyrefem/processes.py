@@ -16,7 +16,6 @@ from weakref import WeakSet
 
 from threadpoolctl import threadpool_limits
 
-from tyrefem.errors import InputError
 from tyrefem.interruption import interruption_delayed
 from tyrefem.threads import VARIABLES
 
@@ -55,7 +54,7 @@ def processes(count: int, begin: Callable[..., None] | None = None, *given: Any)
 
     Raises
     ------
-    InputError : a worker, which imports the script that started it, came to the same place of the script.
+    RuntimeError : a worker, which imports the script that started it, came to the same place of the script.
 
     >>> with processes(1) as pool:
     ...     pool.submit(abs, -3).result()
@@ -79,7 +78,7 @@ def processes(count: int, begin: Callable[..., None] | None = None, *given: Any)
                 worker.terminate()
         if unguarded:
             message = 'a script whose work has several processes needs it under: if __name__ == "__main__":'
-            raise InputError(message) from None
+            raise RuntimeError(message) from None
         raise
 
 

@@ -115,10 +115,15 @@ def test_an_entry_without_a_run_leaves_the_runs_of_other_entries(study: Study, t
 @pytest.mark.parametrize(
     ("run", "words"), [("slow", "two entries for run 'slow' of this table"), (None, "two entries for all runs of this")]
 )
-def test_two_entries_for_one_run_are_refused(study: Study, tmp_path: Path, run: str | None, words: str) -> None:
+def test_two_entries_for_one_run_at_one_drive_are_refused(
+    study: Study, tmp_path: Path, run: str | None, words: str
+) -> None:
     file = of_many(tmp_path, study, {"slow": {}, "fast": FAST})
     with pytest.raises(InputError, match=rf"all.csv: measured.run: {words}"):
-        experiments(replace(study, measured=(Entry(file, run=run), Entry(file, run=run, drive=FAST))))
+        experiments(replace(study, measured=(Entry(file, run=run, drive=FAST), Entry(file, run=run, drive=FAST))))
+    # At two drives: which of them was it?
+    both = experiments(replace(study, measured=(Entry(file, run=run), Entry(file, run=run, drive=FAST))))
+    assert [each.drive for each in both if each.origin == "slow"] == [{}, FAST]
 
 
 def test_a_new_file_is_read_as_the_entry_of_its_run_says(study: Study, tmp_path: Path) -> None:

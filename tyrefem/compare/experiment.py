@@ -158,13 +158,16 @@ class _ExperimentReader:
     def of_entries(self, entries: Sequence[MeasuredEntryLike]) -> list[Experiment]:
         """The runs of entries; one without ``run`` has those runs of its table that no other entry names."""
         named: dict[Path, list[str | None]] = {}
+        drives: list[tuple[Path, str | None, dict[str, Any]]] = []
         for entry in entries:
-            before = named.setdefault(_path(entry.table), [])
-            if entry.run in before:
+            named.setdefault(_path(entry.table), []).append(entry.run)
+            compared = _path(entry.table), entry.run, dict(entry.drive)
+            if compared in drives:
                 which = "all runs" if entry.run is None else f"run '{entry.run}'"
                 hint = "; give each entry its 'run'" if entry.run is None else ""
-                raise InputError(f"two entries for {which} of this table{hint}", field="measured.run", file=entry.table)
-            before.append(entry.run)
+                wrong = f"two entries for {which} of this table at the same drive{hint}"
+                raise InputError(wrong, field="measured.run", file=entry.table)
+            drives.append(compared)
         result = []
         for entry in entries:
             measured = self._of_entry(entry)

@@ -176,7 +176,7 @@ OF_CLASS = {
     "LossTangent.value": "tan delta at the temperature 'at'.",
     "LossTangent.at": "Temperature of the value.",
     "LossTangent.rate": "Rate of the exponential law.",
-    "Cord.crown_angle": "Angle of the cords to the circumference at the crown, where the section's rating has no cord_angle.",
+    "Cord.crown_angle": "Angle of the cords to the circumference at the crown, without a cord_angle of the rating.",
     "Cord.ply_shear_modulus": "In-plane shear modulus of a pair of plies.",
     "ThermalExpansion.coefficient": "Linear expansion of the compound.",
     "ThermalExpansion.cords": "Linear expansion of the cords along themselves.",
