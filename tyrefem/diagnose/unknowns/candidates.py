@@ -9,6 +9,7 @@ import math
 from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 from tyrefem.brief import Brief
 from tyrefem.diagnose.settings import DEFAULT
@@ -35,7 +36,7 @@ class Candidate(Brief):
     def _title(self) -> str:
         return self.key
 
-    @property
+    @cached_property
     def key(self) -> str:
         """Name, variant and runs."""
         return key_of(self.name, dict(self.choice), self.runs)
