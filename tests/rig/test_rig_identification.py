@@ -77,6 +77,11 @@ def test_a_short_test_without_inner_view_says_what_it_cannot_determine() -> None
         estimate = identification.by_name[name]
         assert estimate.holds(estimate.prior_value)
         assert estimate.high / estimate.low > 1.5
+    # A misfit may widen an interval beyond the card's: no share of it is left then.
+    wide = tuple(replace(each, share_left=1.6) if each.name in unknown else each for each in identification.estimates)
+    report = " ".join(replace(identification, estimates=wide).words)
+    assert "less certain than on the card" in report
+    assert "160%" not in report
 
 
 def test_unknown_absorbed_power_is_unknown_scale() -> None:

@@ -39,11 +39,7 @@ def sentences(identification: IdentificationData) -> tuple[str, ...]:
     """Sentences of the verdict, most important first."""
     unknown = [estimate for estimate in identification.properties if estimate.verdict == "not determined"]
     poor = [estimate for estimate in identification.properties if estimate.verdict == "poor"]
-    out = [
-        f"NOT DETERMINED: {name_in_words(estimate.name)}. {estimate.share_left:.0%} of the prior uncertainty remains; "
-        f"the value {shown(estimate)} is mostly the prior value."
-        for estimate in unknown
-    ]
+    out = [f"NOT DETERMINED: {name_in_words(estimate.name)}. {_left_words(estimate)}" for estimate in unknown]
     out += [
         f"POORLY DETERMINED: {name_in_words(estimate.name)}, {shown(estimate)}: "
         f"relative standard deviation above {POOR:.0%}."
@@ -67,6 +63,17 @@ def sentences(identification: IdentificationData) -> tuple[str, ...]:
     out += _linear(identification)
     out += _misfit(identification)
     return tuple(out)
+
+
+def _left_words(estimate: ParameterEstimate) -> str:
+    """What the readings leave of the prior uncertainty; a misfit widens the interval, even beyond that of the card."""
+    if estimate.share_left > 1:
+        return (
+            f"By these readings it is {shown(estimate)}: less certain than on the card, because they contradict the "
+            "model or one another."
+        )
+    left = f"{estimate.share_left:.0%} of the prior uncertainty remains"
+    return f"{left}; the value {shown(estimate)} is mostly the prior value."
 
 
 def _reasons(identification: IdentificationData) -> Iterator[str]:
