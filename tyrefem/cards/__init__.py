@@ -152,6 +152,13 @@ def _one_error(error: ValidationError, file: str | Path | None) -> InputError:
         message = "missing; this field is required"
     elif first["type"] == "string_type":
         message = f"must be text, not {first['input']!r:.60}"
+    elif first["type"] == "dict_type":
+        message = f"must be a table of keys, not {first['input']!r:.60}"
+    elif first["type"] == "too_short":
+        least = first["ctx"]["min_length"]
+        message = f"must have at least {least} entr{'y' if least == 1 else 'ies'}, not {first['ctx']['actual_length']}"
+    elif first["type"] == "string_too_short":
+        message = "must not be empty"
     elif first["type"] in ("tuple_type", "list_type"):
         message = f"must be a list in square brackets, not {first['input']!r:.60}"
     elif first["type"] == "union_tag_invalid":
