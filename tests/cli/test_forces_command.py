@@ -75,7 +75,9 @@ def test_camber_leans_the_forces(here: Path) -> None:
         (["--slip-angles", "1 deg, 2"], "--slip-angles: '2' has no unit"),
         (["--slip-angles", "60 deg"], "--slip-angles: a slip angle of 60 deg is impossible"),
         (["--slips", "-100 %"], "--slips: a slip of -1 is impossible"),
-        (["--friction", "-0.5"], "--friction: must be at least 0"),
+        (["--friction", "-0.5"], "--friction: must be at least 0.001, not -0.5"),
+        (["--friction", "0"], "--friction: must be at least 0.001, not 0: less holds no rolling tyre"),
+        (["--speed", "1e6 m/s"], "--speed: must be at most 400 m/s"),
         (["--motion", "huge"], "--motion: no motion 'huge'"),
     ],
 )
