@@ -47,6 +47,13 @@ def test_files_agree(here: Path, capfd: pytest.CaptureFixture[str]) -> None:
     assert (folder / "forces.png").read_bytes().startswith(b"\x89PNG")
 
 
+def test_stiffnesses_are_at_one_of_the_loads_that_were_computed(here: Path) -> None:
+    """The drive's load is 12 kN: a fit of lighter tyres tells nothing about it."""
+    loads = ["--loads", "4 kN, 6 kN", *FEW[2:], "--cambers", "none"]
+    assert main(["forces", STUDY, *loads, "--no-pictures", "--out", "out", *COARSE]) == 0
+    assert read_tir(here / "out" / "tyre.tir").nominal_load == pytest.approx(5e3)
+
+
 def test_camber_leans_the_forces(here: Path) -> None:
     line = [
         "forces",
@@ -70,7 +77,8 @@ def test_camber_leans_the_forces(here: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["--loads", "8 kN"], "--loads: give at least two loads"),
+        (["--loads", "8 kN"], "--loads: give at least two different loads"),
+        (["--loads", "8 kN, 8 kN"], "--loads: give at least two different loads"),
         (["--loads", "8 kN, -1 kN"], "--loads: must be more than 0 N"),
         (["--slip-angles", "1 deg, 2"], "--slip-angles: '2' has no unit"),
         (["--slip-angles", "60 deg"], "--slip-angles: a slip angle of 60 deg is impossible"),
