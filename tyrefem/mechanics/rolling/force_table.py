@@ -133,8 +133,8 @@ def tyre_forces(
 
     Raises
     ------
-    InputError : errors of `roll`; a drive without a load, where no loads are given; fewer than two different loads; a load that
-        is not positive.
+    InputError : errors of `roll`; a drive without a load, where no loads are given; fewer than two different loads; a
+        load that is not positive.
     """
     for name in ("load", "deflection", "camber"):
         if name in wheel:
