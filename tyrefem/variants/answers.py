@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import fnmatch
 import functools
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -32,6 +32,10 @@ Answers = dict[str, Any]
 
 #: This answer exists only if a temperature (``time_to``) is given.
 TIME_TO = "time_to_limit_s"
+
+
+#: Ends of the names of a sensor's answers: at the end of the drive, and highest.
+SENSOR_ENDS = ("_degC", "_max_degC")
 
 
 #: s, in place of the time of a temperature that was not reached: later than any time.
@@ -105,6 +109,16 @@ def answer_names(study: StudyData, time_to: float | None = None) -> list[str]:
     return all_names if time_to is not None else [name for name in all_names if name != TIME_TO]
 
 
+def check_sensor_names(study: StudyData, ends: Sequence[str] = SENSOR_ENDS) -> None:
+    """Raise `InputError` for a sensor whose answers have the name of another answer, such as a region's highest."""
+    everything = answer_names(study)
+    for name in study.sensors:
+        for shared in (f"{name}{end}" for end in ends):
+            if everything.count(shared) > 1:
+                message = f"'{shared}' would be an answer of this sensor and another one too: name the sensor otherwise"
+                raise InputError(f"{message}, e.g. '{name}-sensor'", field=f"sensors.{name}")
+
+
 def check_answer(name: str, study: StudyData, time_to: float | None = None) -> None:
     """Raise `InputError`, with the nearest name, if a study has no such answer."""
     known = answer_names(study, time_to)
@@ -134,7 +148,7 @@ def hottest(result: FinishedRun, _: float | None) -> Answers:
     }
 
 
-@answer(lambda study: [f"{name}{end}" for end in ("_degC", "_max_degC") for name in study.sensors])
+@answer(lambda study: [f"{name}{end}" for end in SENSOR_ENDS for name in study.sensors])
 def sensors(result: FinishedRun, _: float | None) -> Answers:
     """Temperature of every sensor at the end, and its maximum."""
     read = result.recorded
