@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import fnmatch
 import functools
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -32,10 +32,6 @@ Answers = dict[str, Any]
 
 #: This answer exists only if a temperature (``time_to``) is given.
 TIME_TO = "time_to_limit_s"
-
-
-#: Ends of the names of a sensor's answers: at the end of the drive, and highest.
-SENSOR_ENDS = ("_degC", "_max_degC")
 
 
 #: s, in place of the time of a temperature that was not reached: later than any time.
@@ -109,14 +105,22 @@ def answer_names(study: StudyData, time_to: float | None = None) -> list[str]:
     return all_names if time_to is not None else [name for name in all_names if name != TIME_TO]
 
 
-def check_sensor_names(study: StudyData, ends: Sequence[str] = SENSOR_ENDS) -> None:
-    """Raise `InputError` for a sensor whose answers have the name of another answer, such as a region's highest."""
+def highest_name(sensor: str, regions: Iterable[str]) -> str:
+    """Name of a sensor's highest temperature; a sensor named as a region leaves the plain name to the region.
+
+    >>> highest_name("crown", ["tread"]), highest_name("tread", ["tread"])
+    ('crown_max_degC', 'tread_sensor_max_degC')
+    """
+    return f"{sensor}_sensor_max_degC" if sensor in regions else f"{sensor}_max_degC"
+
+
+def check_sensor_names(study: StudyData) -> None:
+    """Raise `InputError` for a sensor whose last reading has the name of another answer, such as ``hottest_degC``."""
     everything = answer_names(study)
     for name in study.sensors:
-        for shared in (f"{name}{end}" for end in ends):
-            if everything.count(shared) > 1:
-                message = f"'{shared}' would be an answer of this sensor and another one too: name the sensor otherwise"
-                raise InputError(f"{message}, e.g. '{name}-sensor'", field=f"sensors.{name}")
+        if everything.count(f"{name}_degC") > 1:
+            message = f"'{name}_degC' would be an answer of this sensor and another one too: name the sensor otherwise"
+            raise InputError(f"{message}, e.g. '{name}-sensor'", field=f"sensors.{name}")
 
 
 def check_answer(name: str, study: StudyData, time_to: float | None = None) -> None:
@@ -148,12 +152,17 @@ def hottest(result: FinishedRun, _: float | None) -> Answers:
     }
 
 
-@answer(lambda study: [f"{name}{end}" for end in SENSOR_ENDS for name in study.sensors])
+@answer(
+    lambda study: [
+        *(f"{name}_degC" for name in study.sensors),
+        *(highest_name(name, study.section.regions) for name in study.sensors),
+    ]
+)
 def sensors(result: FinishedRun, _: float | None) -> Answers:
     """Temperature of every sensor at the end, and its maximum."""
-    read = result.recorded
+    read, regions = result.recorded, result.study.section.regions
     return {f"{name}_degC": float(series[-1]) for name, series in read.items()} | {
-        f"{name}_max_degC": float(series.max()) for name, series in read.items()
+        highest_name(name, regions): float(series.max()) for name, series in read.items()
     }
 
 
