@@ -26,6 +26,8 @@ Text = Annotated[str, Field(min_length=1)]
 #: The largest tyre is 4 m in diameter; far beyond, coordinates have too few digits for elements.
 PositiveLength = Annotated[float, Unit("m", gt=0, le=20)]
 Temperature = Annotated[float, Unit("degC", le=2000)]
+#: Temperature of a gas, whose mass or pressure goes with its inverse.
+Warmth = Annotated[float, Unit("degC", gt=-273.15, le=2000)]
 FilmCoefficient = Annotated[float, Unit("W/m**2/K", ge=0)]
 
 

@@ -12,7 +12,7 @@ from typing import Annotated, Any, ClassVar
 from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler, model_validator
 from pydantic_core import CoreSchema, core_schema
 
-from tyrefem.cards import Card, Text
+from tyrefem.cards import Card, Text, Warmth
 from tyrefem.errors import InputError, nearest
 from tyrefem.inputs.drive_table import DriveTable
 from tyrefem.inputs.motion import motion_in
@@ -130,8 +130,7 @@ class Drive(DriveTable):
     phase_card: ClassVar[type[Card]] = Phase
     # Before `initial`, whose default is an ambient temperature: an error there must name the phase.
     phases: tuple[Phase, ...]
-    # Above absolute zero: the mass of the contained air is that at this temperature.
-    initial: Annotated[float, Unit("degC", gt=-273.15, le=2000)]
+    initial: Warmth
 
     @model_validator(mode="after")
     def _distinct_names(self) -> Drive:
