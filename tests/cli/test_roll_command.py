@@ -76,6 +76,7 @@ def test_friction_on_the_footprint_in_large_motion(here: Path, capfd: pytest.Cap
         (["--slip", "-100 %"], "--slip: a slip of -1 is impossible"),
         (["--slip", "1 %", "--torque", "10 N m"], "give at most one of slip, torque and axle force"),
         (["--friction", "-0.5"], "--friction: must be at least 0.001, not -0.5"),
+        (["--set", "drive.load=0 N"], "study.toml: drive.load: must be more than 0 N"),
         (["--friction", "0"], "--friction: must be at least 0.001, not 0: less holds no rolling tyre"),
         (["--speed", "1e6 m/s"], "--speed: must be at most 400 m/s"),
         (["--turn-slip", "5 1/m"], "--turn-slip: a path with a radius of 0.2 m is too tight"),

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import math
 import tomllib
-from collections.abc import Collection, Iterable
-from typing import Annotated, Any
+from collections.abc import Collection, Iterable, Mapping
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from tyrefem.cli.line import fail as fail
 from tyrefem.cli.shell import notify
 from tyrefem.errors import InputError
+
+if TYPE_CHECKING:
+    from tyrefem.api import Study
 
 
 def warn(warnings: Iterable[object], printed: Collection[str] = ()) -> tuple[str, ...]:
@@ -95,6 +98,23 @@ def settings(pairs: list[str] | None) -> dict[str, Any]:
             value = text
         changes[key.strip()] = value
     return changes
+
+
+#: Numbers that the first phase of the drive has where no option gives them.
+OF_DRIVE = ("load", "deflection", "pressure", "drum_diameter")
+
+
+def placed(error: InputError, options: Mapping[str, str], given: Collection[str], study: Study) -> InputError:
+    """The error of a number with its option as field, or with the study's drive where no option gave the number.
+
+    ``options``: name of a number -> its option. ``given``: names of the numbers that options gave.
+    """
+    name = error.field
+    if error.file is not None or name is None:
+        return error
+    if name in OF_DRIVE and name not in given:
+        return study.as_written(InputError(error.message, field=f"drive.phases.0.{name}", file=study.file))
+    return InputError(error.message, field=options[name]) if name in options else error
 
 
 def read_quantity(option: str, text: str, unit: str, **bounds: float) -> float:
