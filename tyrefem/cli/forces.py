@@ -114,11 +114,11 @@ def _listed(name: str, text: str) -> list[float]:
 def _placed(error: InputError, given: Collection[str], study: Study) -> InputError:
     """The error with its option, or the study's drive, as field."""
     options = {name: option for name, (option, _) in {**LISTS, **SINGLE}.items()}
-    one = {"slip_angle": "slip_angles", "slip": "slips", "load": "loads", "camber": "cambers"}
-    options |= {name: options[several] for name, several in one.items()} | {"motion": "--motion"}
+    single = {"slip_angle": "slip_angles", "slip": "slips", "load": "loads", "camber": "cambers"}
+    options |= {name: options[several] for name, several in single.items()} | {"motion": "--motion"}
     if error.field == "loads" and "loads" not in given:
         error = InputError(error.message, field="load", file=error.file)
-    return placed(error, options, [*given, *(name for name, several in one.items() if several in given)], study)
+    return placed(error, options, [*given, *(name for name, several in single.items() if several in given)], study)
 
 
 def _words(result: TyreForces) -> str:
