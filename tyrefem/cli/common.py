@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+import shlex
 import tomllib
 from collections.abc import Collection, Iterable, Mapping
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -98,6 +100,15 @@ def settings(pairs: list[str] | None) -> dict[str, Any]:
             value = text
         changes[key.strip()] = value
     return changes
+
+
+def as_argument(file: Path) -> str:
+    """A card's file as the next command takes it: a study's folder where the file has the usual name.
+
+    >>> as_argument(Path("studies/mine/study.toml")), as_argument(Path("my cards/wide.toml"))
+    ('studies/mine', "'my cards/wide.toml'")
+    """
+    return shlex.quote((file.parent if file.name == "study.toml" else file).as_posix())
 
 
 #: Numbers that the first phase of the drive has where no option gives them.
