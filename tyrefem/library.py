@@ -12,7 +12,7 @@ from typing import Any
 
 from tyrefem.cards import merged, read_toml
 from tyrefem.errors import InputError, nearest
-from tyrefem.sizes import is_size, section_of_size
+from tyrefem.sizes import is_size, looks_like_size, section_of_size
 
 FOLDERS = {"section": "geometry", "material": "materials", "study": "studies", "sweep": "studies"}
 #: Kinds of card that are a folder with this file in it; the folder's name is the card's name.
@@ -70,7 +70,8 @@ def find(kind: str, name: str, near: Path | None = None) -> Path:
                 option = option / FILES[kind]
             if os.path.isfile(option):
                 return option
-        raise InputError(f"no {kind} file '{name}'")
+        study_of_size = f"; a size becomes one by: tyrefem new study '{name}'" if looks_like_size(name) else ""
+        raise InputError(f"no {kind} file '{name}'{study_of_size if kind == 'study' else ''}")
     for root in roots(near):
         path_here = root / FOLDERS[kind] / (f"{name}/{FILES[kind]}" if kind in FILES else f"{name}.toml")
         if os.path.isfile(path_here):

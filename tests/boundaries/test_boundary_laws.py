@@ -81,6 +81,13 @@ def test_the_report_s_air_is_that_of_an_open_tyre():
     assert gas.heat_capacity(1.0, 0.0, 0.0) / 718.0 == pytest.approx(1.3, abs=0.01)
 
 
+@pytest.mark.parametrize(("name", "field"), [("held", "temperature"), ("gas", "initial")])
+def test_a_gas_at_absolute_zero_has_no_pressure(name, field):
+    law("contained_air", name, **{field: "1 K"})
+    with pytest.raises(InputError, match=r"'0 K' is out of range: must be more than -273\.15 degC"):
+        tf.study("nasa-22x5.5-8pr", {"boundaries.contained_air": {"law": name, field: "0 K"}})
+
+
 def conditions(**changes):
     return RollingTyre(tf.study("nasa-22x5.5-8pr").replace({k.replace("__", "."): v for k, v in changes.items()}))
 

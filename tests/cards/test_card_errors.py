@@ -96,3 +96,16 @@ def test_laying_changes_over_a_card_leaves_the_rest():
     base = {"a": {"b": 1, "c": 2}, "d": 3}
     assert merged(base, {"a": {"b": 9}}) == {"a": {"b": 9, "c": 2}, "d": 3}
     assert base["a"]["b"] == 1
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"sensors": []}, r"sensors: must be a table of keys, not \[\]$"),
+        ({"title": ""}, "title: must not be empty$"),
+        ({"mechanics.energy": {"load": "1 N", "pressure": "1 Pa", "source": "me", "regions": {}}}, "at least 1 entry"),
+    ],
+)
+def test_a_table_where_a_table_is_wanted(change: dict[str, object], message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        study("nasa-22x5.5-8pr", change)

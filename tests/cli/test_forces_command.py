@@ -47,6 +47,13 @@ def test_files_agree(here: Path, capfd: pytest.CaptureFixture[str]) -> None:
     assert (folder / "forces.png").read_bytes().startswith(b"\x89PNG")
 
 
+def test_stiffnesses_are_at_one_of_the_loads_that_were_computed(here: Path) -> None:
+    """The drive's load is 12 kN: a fit of lighter tyres tells nothing about it."""
+    loads = ["--loads", "4 kN, 6 kN", *FEW[2:], "--cambers", "none"]
+    assert main(["forces", STUDY, *loads, "--no-pictures", "--out", "out", *COARSE]) == 0
+    assert read_tir(here / "out" / "tyre.tir").nominal_load == pytest.approx(5e3)
+
+
 def test_camber_leans_the_forces(here: Path) -> None:
     line = [
         "forces",
@@ -70,12 +77,18 @@ def test_camber_leans_the_forces(here: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["--loads", "8 kN"], "--loads: give at least two loads"),
+        (["--loads", "8 kN"], "--loads: give at least two different loads"),
+        (["--loads", "8 kN, 8 kN"], "--loads: give at least two different loads"),
         (["--loads", "8 kN, -1 kN"], "--loads: must be more than 0 N"),
         (["--slip-angles", "1 deg, 2"], "--slip-angles: '2' has no unit"),
         (["--slip-angles", "60 deg"], "--slip-angles: a slip angle of 60 deg is impossible"),
         (["--slips", "-100 %"], "--slips: a slip of -1 is impossible"),
-        (["--friction", "-0.5"], "--friction: must be at least 0"),
+        (["--friction", "-0.5"], "--friction: must be at least 0.001, not -0.5"),
+        (["--set", "drive.drum_diameter=1 mm"], "study.toml: drive.drum_diameter: a drum of 1 mm is too small"),
+        (["--drum", "1 mm"], "tyrefem: --drum: a drum of 1 mm is too small"),
+        (["--cambers", "80 deg"], "tyrefem: --cambers: must be between -34.4 and 34.4 deg, not 80 deg"),
+        (["--friction", "0"], "--friction: must be at least 0.001, not 0: less holds no rolling tyre"),
+        (["--speed", "1e6 m/s"], "--speed: must be at most 400 m/s"),
         (["--motion", "huge"], "--motion: no motion 'huge'"),
     ],
 )

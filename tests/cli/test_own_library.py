@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shlex
 import shutil
 from collections.abc import Callable
 from pathlib import Path
@@ -94,3 +95,20 @@ def test_new_refuses_what_is_no_name(refused: Callable[..., str], name: str) -> 
 def test_new_of_an_unknown_kind_or_card(refused: Callable[..., str]) -> None:
     assert "did you mean 'material'?" in refused("new", "materiall", "x")
     assert "no section named 'nasa'" in refused("new", "section", "x", "--from", "nasa")
+
+
+@pytest.mark.parametrize(
+    ("words", "out", "argument"),
+    [
+        (["205/55R16"], "cards/wide tyre.toml", "cards/wide tyre.toml"),
+        (["205/55R16"], "wide/study.toml", "wide"),
+        (["mine"], "other.toml", "other.toml"),
+    ],
+)
+def test_the_next_command_that_new_prints_finds_the_card(
+    words: list[str], out: str, argument: str, user_library: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["new", "study", *words, "--out", out]) == 0
+    last = capfd.readouterr().out.splitlines()[-1]
+    assert shlex.split(last.rpartition("tyrefem ")[2])[1:] == [argument]
+    assert main(["check", argument]) == 0

@@ -53,7 +53,7 @@ def test_a_run_says_so_too(refused: Callable[..., str]) -> None:
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["--camber", "40 deg"], "--camber: camber must lie between -0.6 and 0.6 rad"),
+        (["--camber", "40 deg"], "--camber: must be between -34.4 and 34.4 deg, not 40 deg"),
         (["--camber", "2"], "--camber: '2' has no unit"),
         (["--at", "treat"], "--at: 'treat' is neither a place like '287 mm, 80 mm' (r, z) nor a region; did you mean"),
         (["--at", "1 m, 2 m"], "--at: '1 m, 2 m' is not in the section, whose nearest point is"),

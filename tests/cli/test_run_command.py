@@ -135,6 +135,7 @@ def test_a_folder_that_cannot_be_written(refused: Callable[..., str]) -> None:
     [
         (["nasa-22x5.5-8p"], "did you mean 'nasa-22x5.5-8pr'?"),
         (["./nowhere"], "no study file './nowhere'"),
+        (["205/55R16"], "no study file '205/55R16'; a size becomes one by: tyrefem new study '205/55R16'"),
         (["~nobody-by-that-name/x"], "no study file"),
         ([NASA, "--set", "drive.sped=3 mph"], "did you mean 'speed'?"),
         ([NASA, "--set", "drive.speed"], "is not KEY=VALUE"),

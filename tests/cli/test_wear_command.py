@@ -60,6 +60,10 @@ def test_without_options_the_drive_of_a_rolling_study_wears(here: Path, capfd: p
     ("arguments", "words"),
     [
         ([], "materials.tread.wear: the card of region 'tread' has no table [wear]"),
+        (
+            ["--set", "materials.tread=rubber-tread-aircraft", "--set", "drive.load=0 N"],
+            "study.toml: drive.load: must be more than 0 N",
+        ),
         (["--slip-angle", "1"], "--slip-angle: '1' has no unit"),
         (["--distance", "0 km"], "--distance: '0 km' is out of range"),
     ],

@@ -54,6 +54,7 @@ rim = { law = "lumped", mass = "4 kg", cooling = "2 W/K", air = "0.5 W/K" }
 [sensors]
 skin = { s = "0.3 in", depth = "0.60 in" }
 deep = { s = "2 in", depth = "0.1 in", lag = "4 s" }
+tread = { s = "2 in", depth = "0.02 in" }               # named as a region
 
 [[measured]]
 table = "slow.csv"

@@ -137,6 +137,12 @@ def test_default_box_holds_the_study_and_its_measured_runs(small: Study) -> None
         ({"mechanics.strain": ["arcs", "barrel"]}, {}, "a list has no slider"),
         ({"drive.sped": ("10 mph", "20 mph")}, {}, "speed"),
         ({"drive.speed": ("10 mph", "20 mph")}, {"axes": ("drive.load", "drive.speed")}, "'drive.load' does not vary"),
+        (
+            {"drive.speed": ("10 mph", "20 mph")},
+            {"axes": ("drive.speed", "drive.speed")},
+            "axes: must be two different",
+        ),
+        ({"drive.speed": ("10 mph", "20 mph")}, {"axes": "drive.speed"}, "axes: must be two different numbers"),
         ({"drive.speed": ("10 mph", "20 mph")}, {"tolerance": 1e-4}, "numerics.tolerance"),
         ({"drive.speed": ("10 mph", "20 mph")}, {"limits": {"hotest_degC": {"below": 1}}}, "hottest_degC"),
     ],

@@ -159,7 +159,7 @@ def test_two_settings_stand_side_by_side(acted: Any) -> None:
     assert 0 < float(error) < 0.5, "the certificate's error beside them"
     assert all(row[-1] for name, row in rows.items() if name != "speed")
     assert pins["note"].startswith("B − A: blue colder, red hotter")
-    assert pins["ghosts"] == 2 * 4
+    assert pins["ghosts"] == 2 * 5
 
 
 @pytest.mark.usefixtures("needs_chromium")

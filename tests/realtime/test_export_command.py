@@ -28,7 +28,7 @@ STUDY = "nasa-22x5.5-8pr"
         (["--out", "tyre.txt"], "must end with .npz"),
         (["--speed", "1:2:3"], "is not FROM:TO"),
         (["--speed", "30 mph:10 mph"], "from a lower to a higher value"),
-        (["--load", "-1 kN:10 kN"], "must be positive"),
+        (["--load", "-1 kN:10 kN"], "tyrefem: --load: must be positive"),
         (["--pressure", "20 degC:30 degC"], "pressure"),
         (["--load", "10 kN:200 kN", "--set", "mesh.size=12 mm"], "deflects the tyre"),
         (["--tolerance", "0 K"], "must be positive"),

@@ -49,7 +49,7 @@ def test_averaging_and_figures(capfd, here):
         (["film", "--speed", "50 km/h", "--footprint", "0 m"], "--footprint: '0 m' is out of range"),
         (
             ["film", "--speed", "1 m/s", "--footprint", "1 m", "--road-conductivity", "1 m"],
-            "road_conductivity: 'm' is not a unit of this quantity",
+            "tyrefem: --road-conductivity: 'm' is not a unit of this quantity",
         ),
         (["averaging", "--inside", "warm"], "--inside: 'warm' is not a quantity"),
         (["tabel"], "No such command 'tabel'"),

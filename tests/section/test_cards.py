@@ -180,7 +180,7 @@ def change(card: dict[str, Any], where: str, value: Any) -> None:
         ("parameters.crown_radios", "1 m", None, "did you mean 'crown_radius'"),
         ("line.source", None, "line.source", "missing"),
         ("layers", [], "layers", "at least 1"),
-        ("title", "", "title", "at least 1"),
+        ("title", "", "title", "must not be empty"),
     ],
 )
 def test_bad_card_names_field_and_reason(

@@ -63,6 +63,10 @@ def test_aircraft_sizes(
     [
         ("205/60X15", "did you mean '205/60R15'"),
         ("205-60-15", "did you mean '205/60R15'"),
+        ("P205/60X15 91V", "did you mean 'P205/60R15 91V'"),
+        ("LT245-75-16", "did you mean 'LT245/75R16'"),
+        ("195-70-15C", "did you mean '195/70R15C'"),
+        ("h44.5/16.5/21", "did you mean 'H44.5x16.5-21'"),
         ("22x", "allowed are sizes like"),
         ("*30x7.7 26PR", "allowed are sizes like"),
         ("205/60-15", "radials are written 205/60R15"),
@@ -80,6 +84,12 @@ def test_aircraft_sizes(
 def test_what_is_no_size_says_what_is_allowed(text: object, message: str) -> None:
     with pytest.raises(InputError, match="(?s)" + message.replace("(", r"\(")):
         parse_size(text)
+
+
+def test_the_text_keeps_its_speed_symbol() -> None:
+    assert parse_size("205/60R15 100YXL").text == "205/60R15 100YXL"
+    assert parse_size("205/60R15 100Y XL").text == "205/60R15 100Y XL"
+    assert parse_size("22 x 5.5 - 12").text.startswith("22x5.5")
 
 
 def test_names_of_cards_are_no_sizes() -> None:

@@ -57,6 +57,17 @@ def test_bias_tyres_lie_within_the_data_book(size: str) -> None:
     assert 20 < np.degrees(rules["cord_angle"].value) < 45
 
 
+@pytest.mark.parametrize(
+    ("size", "count"),
+    [("205/60R15", "plies"), ("205/60R15", "grooves"), ("46x17R20", "belt_plies"), ("22x5.5 8PR", "ply_rating")],
+)
+def test_a_count_is_a_whole_number(size: str, count: str) -> None:
+    """It was rounded where it is drawn, and the file said another number."""
+    with pytest.raises(InputError, match=f"parameters.{count}: must be a whole number, not 3.5"):
+        draw_size(size, {count: 3.5})
+    assert draw_size(size, {count: "4"}).rules[count].value == 4
+
+
 @pytest.mark.parametrize("size", SIZES)
 def test_a_size_is_meshed_and_nothing_is_odd(size: str) -> None:
     section = tf.section_from_size(size)

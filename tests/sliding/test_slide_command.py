@@ -63,10 +63,16 @@ def test_locked_wheel_is_printed_and_drawn(here: Path, capfd: pytest.CaptureFixt
         (["rise", *PAD, "--load", "10 N"], "--breadth"),
         (["rise", *PAD, "--pressure", "1 m"], "--pressure"),
         (["rise", *PAD, "--pressure", "1 bar", "--track", "iec"], "did you mean 'ice'"),
-        (["rise", *PAD, "--pressure", "1 bar", "--slid", "1 mm"], "slid"),
+        (["rise", *PAD, "--pressure", "1 bar", "--slid", "1 mm"], "tyrefem: --slid: "),
+        (
+            ["rise", *PAD, "--pressure", "1 bar", "--behind", "-1 mm"],
+            "tyrefem: --behind: must be finite and at least 0",
+        ),
+        (["rise", *PAD, "--pressure", "1 bar", "--breadth", "9 mm"], "tyrefem: --breadth: goes with --load"),
         (["rise", "--speed", "0 m/s", *PAD[2:], "--pressure", "1 bar"], "--speed"),
         (["rise", *PAD[:4], "--friction=-0.5", "--pressure", "1 bar"], "--friction"),
-        (["locked-wheel", "--length", "0 mm"], "length"),
+        (["locked-wheel", "--length", "0 mm"], "tyrefem: --length: "),
+        (["locked-wheel", "--decomposition", "0 K"], "tyrefem: --decomposition: must be finite and more than 0"),
         (["locked-wheel", "--out", "skid.gif"], "--out"),
     ],
 )

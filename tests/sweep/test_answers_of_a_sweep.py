@@ -522,3 +522,29 @@ def test_every_kind_of_answer_has_registered_pictures() -> None:
         assert figures.dispatch(kind) is not figures.dispatch(object), kind
     with pytest.raises(TypeError, match="no pictures are registered for dict"):
         figures({})
+
+
+SENSOR = {"s": "2 in", "depth": "0.02 in"}
+
+
+def test_a_sensor_named_as_a_region_has_an_answer_of_its_own(tyre: Study) -> None:
+    """Its highest temperature stood in the place of the region's."""
+    same = tyre.replace({"sensors.tread": SENSOR, "sensors.other": SENSOR})
+    plan = plan_of(same, {"drive.speed": ["10 mph", "20 mph"]})
+    assert "tread_sensor_max_degC" in answer_names(same)
+    for table in (sweep(plan).table, sweep(plan, reduced="never").table):
+        assert (table["tread_max_degC"] > table["tread_sensor_max_degC"]).all()
+        assert table["tread_sensor_max_degC"].tolist() == table["other_max_degC"].tolist()
+
+
+@pytest.mark.parametrize("name", ["hottest", "tread_max"])
+def test_a_sensor_whose_answer_has_the_name_of_another_is_refused(name: str, tmp_path: Path) -> None:
+    (tmp_path / "cases.csv").write_text("name,drive.speed [mph]\na,10\n")
+    named = study("nasa-22x5.5-8pr", {f"sensors.{name}": SENSOR, "cases": str(tmp_path / "cases.csv")})
+    message = rf"sensors\.{name}: '{name}_degC' would be .* e\.g\. '{name}-sensor'"
+    with pytest.raises(InputError, match=message):
+        plan_of(named, {"drive.speed": ["10 mph", "20 mph"]})
+    with pytest.raises(InputError, match=message):
+        checked_pairs(named, EnvelopeCard(answer="hottest_degC", below=100.0))
+    with pytest.raises(InputError, match=message):
+        named.campaign()

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING
 
+from tyrefem.api.numbers import check_numbers
 from tyrefem.api.verbs import given, with_verbs
 from tyrefem.inputs import study as studies
 
@@ -17,7 +18,10 @@ if TYPE_CHECKING:
 
 
 class StudyMechanics(studies.StudyData):
-    """A study's methods for the mechanics of its tyre. Numbers are in SI; None: as in the drive's first phase."""
+    """A study's methods for the mechanics of its tyre. Numbers are in SI; None: as in the drive's first phase.
+
+    Text with a unit, ``nan`` and ``inf`` are `InputError` that name the argument.
+    """
 
     def press(
         self,
@@ -49,6 +53,10 @@ class StudyMechanics(studies.StudyData):
         from tyrefem.api.mechanics import LoadedTyre
         from tyrefem.mechanics.rolling.press import press
 
+        check_numbers(
+            pressure=pressure, load=load, deflection=deflection, drum_diameter=drum_diameter, camber=camber,
+            tolerance=tolerance, speed=speed,
+        )  # fmt: skip
         data = press(
             self, pressure=pressure, load=load, deflection=deflection, drum_diameter=drum_diameter, camber=camber,
             tolerance=tolerance, motion=motion, speed=speed,
@@ -94,6 +102,11 @@ class StudyMechanics(studies.StudyData):
         from tyrefem.mechanics.rolling.roll import roll
 
         wheel = given(pressure=pressure, drum_diameter=drum_diameter)
+        check_numbers(
+            slip_angle=slip_angle, slip=slip, torque=torque, axle_force=axle_force, turn_slip=turn_slip,
+            tolerance=tolerance, camber=camber, friction=friction, speed=speed, load=load, deflection=deflection,
+            **wheel,
+        )  # fmt: skip
         data = roll(
             self, slip_angle=slip_angle, slip=slip, torque=torque, axle_force=axle_force, turn_slip=turn_slip,
             tolerance=tolerance, camber=camber, friction=friction, speed=speed, load=load, deflection=deflection,
@@ -139,6 +152,11 @@ class StudyMechanics(studies.StudyData):
         from tyrefem.mechanics.rolling.slip_curve import slip_curve
 
         wheel = given(pressure=pressure, drum_diameter=drum_diameter)
+        check_numbers(
+            slip_angle=slip_angle, slip=slip, torque=torque, axle_force=axle_force, turn_slip=turn_slip,
+            tolerance=tolerance, camber=camber, friction=friction, speed=speed, load=load, deflection=deflection,
+            **wheel,
+        )  # fmt: skip
         data = slip_curve(
             self, slip_angle=slip_angle, slip=slip, torque=torque, axle_force=axle_force, turn_slip=turn_slip,
             tolerance=tolerance, camber=camber, friction=friction, speed=speed, load=load, deflection=deflection,
@@ -174,6 +192,7 @@ class StudyMechanics(studies.StudyData):
         options = given(
             slip_angles=slip_angles, slips=slips, cambers=cambers, pressure=pressure, drum_diameter=drum_diameter,
         )  # fmt: skip
+        check_numbers(loads=loads, friction=friction, speed=speed, **options)
         data = tyre_forces(
             self, loads=loads, harmonics=harmonics, progress=progress, friction=friction, speed=speed, motion=motion,
             **options,
@@ -200,6 +219,7 @@ class StudyMechanics(studies.StudyData):
         from tyrefem.api.mechanics import NaturalModes
         from tyrefem.mechanics.footprint.natural_frequencies import natural_frequencies
 
+        check_numbers(pressure=pressure, amplitude=amplitude)
         data = natural_frequencies(self, harmonics, count, pressure=pressure, amplitude=amplitude)
         return with_verbs(NaturalModes, data)
 
@@ -226,5 +246,6 @@ class StudyMechanics(studies.StudyData):
         from tyrefem.api.life import Life
         from tyrefem.fatigue.life import life
 
+        check_numbers(temperature=temperature)
         data = life(self, temperature=temperature, plateau=plateau, result=result, progress=progress)
         return with_verbs(Life, data)

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from typing import Annotated, ClassVar, Literal
 
 from tyrefem.boundaries import CAL, FILM, Law
-from tyrefem.cards import FilmCoefficient, Temperature
+from tyrefem.cards import FilmCoefficient, Warmth
 from tyrefem.cards.plausible import AIR_FILM, GAS_HEAT
 from tyrefem.plugins import Range, Trial, trial
 from tyrefem.quantity import Unit
@@ -29,7 +29,7 @@ class ContainedAirLaw(Law):
     #: 1e-4 cal/(cm2 s K), appendix I: gentle mixing by the carcass's motion.
     film: Annotated[FilmCoefficient, AIR_FILM] = 1e-4 * CAL
     #: Initial temperature; by default the drive's initial temperature.
-    initial: Temperature | None = None
+    initial: Warmth | None = None
 
     def start(self, initial: float) -> float:
         """Initial temperature of the gas, degC, for the initial temperature of the drive."""
@@ -93,7 +93,7 @@ class Held(ContainedAirLaw):
     """A gas of constant ``temperature``, as measured or of a large reservoir."""
 
     law: Literal["held"]
-    temperature: Temperature
+    temperature: Warmth
 
     @property
     def fixed_temperature(self) -> float:

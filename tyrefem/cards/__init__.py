@@ -26,6 +26,8 @@ Text = Annotated[str, Field(min_length=1)]
 #: The largest tyre is 4 m in diameter; far beyond, coordinates have too few digits for elements.
 PositiveLength = Annotated[float, Unit("m", gt=0, le=20)]
 Temperature = Annotated[float, Unit("degC", le=2000)]
+#: Temperature of a gas, whose mass or pressure goes with its inverse.
+Warmth = Annotated[float, Unit("degC", gt=-273.15, le=2000)]
 FilmCoefficient = Annotated[float, Unit("W/m**2/K", ge=0)]
 
 
@@ -152,6 +154,13 @@ def _one_error(error: ValidationError, file: str | Path | None) -> InputError:
         message = "missing; this field is required"
     elif first["type"] == "string_type":
         message = f"must be text, not {first['input']!r:.60}"
+    elif first["type"] == "dict_type":
+        message = f"must be a table of keys, not {first['input']!r:.60}"
+    elif first["type"] == "too_short":
+        least = first["ctx"]["min_length"]
+        message = f"must have at least {least} entr{'y' if least == 1 else 'ies'}, not {first['ctx']['actual_length']}"
+    elif first["type"] == "string_too_short":
+        message = "must not be empty"
     elif first["type"] in ("tuple_type", "list_type"):
         message = f"must be a list in square brackets, not {first['input']!r:.60}"
     elif first["type"] == "union_tag_invalid":

@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 import math
+import shlex
 import tomllib
-from collections.abc import Collection, Iterable
-from typing import Annotated, Any
+from collections.abc import Collection, Iterable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from tyrefem.cli.line import fail as fail
 from tyrefem.cli.shell import notify
 from tyrefem.errors import InputError
+
+if TYPE_CHECKING:
+    from tyrefem.api import Study
 
 
 def warn(warnings: Iterable[object], printed: Collection[str] = ()) -> tuple[str, ...]:
@@ -95,6 +100,32 @@ def settings(pairs: list[str] | None) -> dict[str, Any]:
             value = text
         changes[key.strip()] = value
     return changes
+
+
+def as_argument(file: Path) -> str:
+    """A card's file as the next command takes it: a study's folder where the file has the usual name.
+
+    >>> as_argument(Path("studies/mine/study.toml")), as_argument(Path("my cards/wide.toml"))
+    ('studies/mine', "'my cards/wide.toml'")
+    """
+    return shlex.quote((file.parent if file.name == "study.toml" else file).as_posix())
+
+
+#: Numbers that the first phase of the drive has where no option gives them.
+OF_DRIVE = ("load", "deflection", "pressure", "drum_diameter")
+
+
+def placed(error: InputError, options: Mapping[str, str], given: Collection[str], study: Study) -> InputError:
+    """The error of a number with its option as field, or with the study's drive where no option gave the number.
+
+    ``options``: name of a number -> its option. ``given``: names of the numbers that options gave.
+    """
+    name = error.field
+    if error.file is not None or name is None:
+        return error
+    if name in OF_DRIVE and name not in given:
+        return study.as_written(InputError(error.message, field=f"drive.phases.0.{name}", file=study.file))
+    return InputError(error.message, field=options[name]) if name in options else error
 
 
 def read_quantity(option: str, text: str, unit: str, **bounds: float) -> float:

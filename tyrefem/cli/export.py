@@ -104,16 +104,21 @@ def export(
     count = workers or os.cpu_count() or 1
     files = {"file": path} | ({"fmu": path.with_suffix(".fmu")} if fmu else {})
     with results_file(path, (".npz",), also=files.values(), force=force):
-        with stages() as tick:
-            certificate = write(
-                chosen,
-                path,
-                ranges=given,
-                tolerance=allowed,
-                duration=lasting,
-                scheduler=Local(count) if count > 1 else Here(),
-                progress=tick,
-            )
+        try:
+            with stages() as tick:
+                certificate = write(
+                    chosen,
+                    path,
+                    ranges=given,
+                    tolerance=allowed,
+                    duration=lasting,
+                    scheduler=Local(count) if count > 1 else Here(),
+                    progress=tick,
+                )
+        except InputError as error:
+            if error.file is None and error.field in (*inputs, "road_temperature", "tolerance"):
+                raise InputError(error.message, field=f"--{error.field}".replace("_", "-")) from None
+            raise
         if fmu:
             from tyrefem.realtime.fmu import write_fmu
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -12,6 +13,7 @@ from tyrefem.cli.common import (
     ForceOption,
     SetOption,
     StudyArgument,
+    placed,
     read_quantity,
     settings,
     warn,
@@ -22,6 +24,7 @@ from tyrefem.errors import InputError
 from tyrefem.output.folder import results_folder
 
 if TYPE_CHECKING:
+    from tyrefem.api import Study
     from tyrefem.mechanics.rolling.force_table import TyreForces
 
 #: Options with several quantities, and with one: name and unit.
@@ -95,7 +98,7 @@ def forces(
             )
             write_files(result, folder, pictures=pictures)
         except InputError as error:
-            raise _placed(error) from None
+            raise _placed(error, given, loaded) from None
     answer_with(summary(result))
     say(_words(result))
     say(f"results in {folder}")
@@ -108,13 +111,14 @@ def _listed(name: str, text: str) -> list[float]:
     return [read_quantity(option, part.strip(), unit) for part in text.split(",")]
 
 
-def _placed(error: InputError) -> InputError:
-    """The error with its option as field."""
+def _placed(error: InputError, given: Collection[str], study: Study) -> InputError:
+    """The error with its option, or the study's drive, as field."""
     options = {name: option for name, (option, _) in {**LISTS, **SINGLE}.items()}
-    options |= {"motion": "--motion", "slip_angle": "--slip-angles", "slip": "--slips", "load": "--loads"}
-    if error.file is None and error.field in options:
-        return InputError(error.message, field=options[error.field])
-    return error
+    single = {"slip_angle": "slip_angles", "slip": "slips", "load": "loads", "camber": "cambers"}
+    options |= {name: options[several] for name, several in single.items()} | {"motion": "--motion"}
+    if error.field == "loads" and "loads" not in given:
+        error = InputError(error.message, field="load", file=error.file)
+    return placed(error, options, [*given, *(name for name, several in single.items() if several in given)], study)
 
 
 def _words(result: TyreForces) -> str:

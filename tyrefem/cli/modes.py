@@ -44,12 +44,13 @@ def modes(
 ) -> None:
     """Natural frequencies and modes of the inflated, unloaded tyre, with its rim held; with --speed it rotates."""
     from tyrefem.api import study as load
+    from tyrefem.inputs.drive import FASTEST
     from tyrefem.mechanics.footprint.natural_frequencies import NEEDS, natural_frequencies
     from tyrefem.mechanics.rolling.rotating_modes import rotating_frequencies
     from tyrefem.reports.modes import FILES, write_files
 
     given = None if pressure is None else read_quantity("--pressure", pressure, "Pa", gt=0)
-    turning = None if speed is None else read_quantity("--speed", speed, "m/s", gt=0)
+    turning = None if speed is None else read_quantity("--speed", speed, "m/s", gt=0, le=FASTEST)
     strain = read_quantity("--amplitude", amplitude, "1", gt=0, le=1)
     loaded = load(study, settings(changes), case)
     NEEDS.check(loaded)
@@ -65,6 +66,13 @@ def modes(
             else:
                 result = rotating_frequencies(loaded, turning, range(highest + 1), **options)
         except InputError as error:
+            options_given = {"pressure": pressure, "speed": speed, "amplitude": amplitude}
+            if (
+                error.file in (None, loaded.file)
+                and error.field is not None
+                and options_given.get(error.field) is not None
+            ):
+                raise InputError(error.message, field=f"--{error.field}") from None
             field = "drive.phases.0.pressure" if error.field == "pressure" and given is None else error.field
             placed = InputError(error.message, field=field, file=error.file or loaded.file)
             raise error if error.file else loaded.as_written(placed) from None

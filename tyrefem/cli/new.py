@@ -10,7 +10,7 @@ from typing import Annotated, Any
 
 import typer
 
-from tyrefem.cli.common import ForceOption, SetOption, settings
+from tyrefem.cli.common import ForceOption, SetOption, as_argument, settings
 from tyrefem.cli.new_plugin import PLUGINS, new_plugin
 from tyrefem.cli.shell import answer_with, say
 from tyrefem.cli.show import complete_names
@@ -108,7 +108,7 @@ def new(
     say(f"{target} written, a copy of {source.parent.name if kind == 'study' else source.stem}")
     if note:
         say(f"note: {note}")
-    say(f"edit it, then: tyrefem check {target.parent if kind == 'study' else target}")
+    say(f"edit it, then: tyrefem check {as_argument(target)}")
 
 
 def _of_the_other_tyre(kind: str, source: Path) -> tuple[str, str]:

@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from tyrefem.cli.common import as_argument
 from tyrefem.cli.progress import progress
 from tyrefem.cli.shell import answer_with, notify, say
 from tyrefem.errors import InputError
@@ -81,5 +82,5 @@ def new_size(kind: str, size: str, numbers: Mapping[str, Any], out: Path | None,
         f"outer diameter {section.outer_diameter * 1e3:.1f} mm, width {section.overall_width * 1e3:.1f} mm on a "
         f"rim {drawn.rules['rim_width'].text} wide"
     )
-    shown = target.parent if kind == "study" else target
+    shown = as_argument(target)
     say(f"see it: tyrefem show {kind} {shown}" if kind == "section" else f"then: tyrefem press {shown}")

@@ -121,7 +121,10 @@ def film(
     }
     lines, films = [], {}
     for name, law in sorted((name, law) for name, law in laws("road").items() if name in words):
-        chosen: Any = law.check({"law": name} | (of_road if name == "half-space" else {}))
+        try:
+            chosen: Any = law.check({"law": name} | (of_road if name == "half-space" else {}))
+        except InputError as error:
+            raise InputError(error.message, field=f"--{error.field}".replace("_", "-")) from None
         films[name] = chosen.film(Contact(v, length, k, C))
         lines.append(f"{name:16} {films[name]:10.1f} W/m2/K  {words.get(name, '')}".rstrip())
     ideal = half_space_film(v, length, k, C)

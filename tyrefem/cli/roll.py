@@ -13,6 +13,7 @@ from tyrefem.cli.common import (
     ForceOption,
     SetOption,
     StudyArgument,
+    placed,
     read_quantity,
     settings,
     warn,
@@ -122,7 +123,8 @@ def roll(
                 result = rolled = rolled_by(loaded, **given)
                 words = _words(rolled)
         except InputError as error:
-            raise _placed(error, given) from None
+            options = {name: option for name, (option, _) in {**OPTIONS, **VARIED}.items()} | {"motion": "--motion"}
+            raise placed(error, options, given, loaded) from None
         if several:
             write_curve(curve, folder, pictures=pictures)
         else:
@@ -144,16 +146,6 @@ def _values(name: str, text: str) -> float | list[float]:
     first, last = (read_quantity(option, part, unit) for part in parts[:2])
     count = int(parts[2])
     return [first + (last - first) * k / (count - 1) for k in range(count)]
-
-
-def _placed(error: InputError, given: dict[str, Any]) -> InputError:
-    """The error with its option as field."""
-    options = {**OPTIONS, **VARIED}
-    if error.file is None and error.field == "motion":
-        return InputError(error.message, field="--motion")
-    if error.file is None and error.field in options and (error.field in given or error.field in VARIED):
-        return InputError(error.message, field=options[error.field][0])
-    return error
 
 
 def _words(rolled: RolledStudy) -> str:

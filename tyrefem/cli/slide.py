@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
@@ -74,10 +75,11 @@ def rise(
         "peclet_number": v * long / below.diffusivity,
         "heated_depth_m": 2.0 * (below.diffusivity * dwell) ** 0.5,
     }
-    if behind is not None:
-        rises["rise_behind_K"] = edge * sliding.fall_off(_read("--behind", behind, "m"), long)
-    if slid is not None:
-        rises["share_into_slider"] = sliding.share_into_slider(long, _read("--slid", slid, "m"), top, below)
+    with _options_named({"distance": "--behind", "slid": "--slid"}):
+        if behind is not None:
+            rises["rise_behind_K"] = edge * sliding.fall_off(_read("--behind", behind, "m"), long)
+        if slid is not None:
+            rises["share_into_slider"] = sliding.share_into_slider(long, _read("--slid", slid, "m"), top, below)
     _print_values(rises)
 
 
@@ -130,7 +132,8 @@ def locked_wheel(
     changes: dict[str, Any] = {
         name: _read(option, text, unit) for name, (option, text, unit) in given.items() if text is not None
     }
-    car = replace(LockedWheel(), **changes)
+    with _options_named({name: option for name, (option, _, _) in given.items()}):
+        car = replace(LockedWheel(), **changes)
     rows = [
         {
             "speed_km_h": kmh,
@@ -166,6 +169,15 @@ def _draw(picture: Callable[[Any], Any], shown: Any, out: Path, force: bool) -> 
         temporary.write_bytes(written(picture(shown), out.suffix))
 
 
+@contextmanager
+def _options_named(options: Mapping[str, str]) -> Iterator[None]:
+    """Errors of a number name its option. ``options``: name of a number -> its option."""
+    try:
+        yield
+    except InputError as error:
+        raise InputError(error.message, field=options.get(error.field or "", error.field)) from None
+
+
 def _read(option: str, text: str, unit: str) -> float:
     from tyrefem.quantity import Unit
 
@@ -191,6 +203,8 @@ def _contact_pressure(pressure: str | None, load: str | None, breadth: str | Non
     if (pressure is None) == (load is None):
         raise InputError("give either --pressure or --load")
     if pressure is not None:
+        if breadth is not None:
+            raise InputError("goes with --load: a pressure needs none", field="--breadth")
         value = _read("--pressure", pressure, "Pa")
         not_negative(**{"--pressure": value})
         return value

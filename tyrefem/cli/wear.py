@@ -13,6 +13,7 @@ from tyrefem.cli.common import (
     ForceOption,
     SetOption,
     StudyArgument,
+    placed,
     read_quantity,
     settings,
     warn,
@@ -88,8 +89,7 @@ def wear(
                 worn_off: RingWear = drive_wear(loaded) if rolled is None else ring_wear(rolled)
             worn = worn_section(loaded, worn_off, kilometres) if distance is not None else None
         except InputError as error:
-            option = OPTIONS.get(error.field or "", ("",))[0]
-            raise InputError(error.message, field=option) if option and not error.file else error from None
+            raise placed(error, {name: option for name, (option, _) in OPTIONS.items()}, given, loaded) from None
         write_files(loaded, rolled, worn_off, folder, worn, pictures=pictures)
     answer_with(folder / "summary.json")
     say(words(loaded, rolled, worn_off))

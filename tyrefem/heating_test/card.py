@@ -15,6 +15,7 @@ from pydantic_core import CoreSchema
 
 from tyrefem import library
 from tyrefem.cards import Card, PositiveLength, Temperature, Text, read_toml
+from tyrefem.cards.file_names import check_file_name
 from tyrefem.cards.plausible import CONDUCTIVITY, DENSITY, EMISSIVITY, SPECIFIC_HEAT, Plausible
 from tyrefem.errors import InputError, InputWarning, nearest
 from tyrefem.quantity import Unit
@@ -215,6 +216,7 @@ class RigCard(Card):
         self._patch()
         names = [layer.name for layer in self.layers]
         for number, name in enumerate(names):
+            check_file_name(name, "layer", f"layers.{number}.name")
             if name in names[:number]:
                 raise InputError(f"two layers are named '{name}'", field=f"layers.{number}.name")
         for name, sensor in self.sensors.items():
@@ -223,6 +225,7 @@ class RigCard(Card):
         if low > high:
             raise InputError("the first power must not be larger than the second", field="laser.power_range")
         for name, run in self.runs.items():
+            check_file_name(name, "run", "runs")
             if not low <= run.power <= high:
                 words = f"{run.power:g} W is outside the laser's range, {low:g} to {high:g} W (laser.power_range)"
                 raise InputError(words, field=f"runs.{name}.power")

@@ -27,12 +27,22 @@ def changed(data: Mapping[str, Any], key: str, value: Any) -> dict[str, Any]:
     return all_changed(data, {key: value})
 
 
+def check_changes_table(changes: object) -> None:
+    """Raise `InputError` for changes that are no table of dotted names."""
+    if not isinstance(changes, Mapping):
+        raise InputError(f"changes must be a table like {{'drive.speed': '25 mph'}}, not {changes!r:.60}")
+    for key in changes:
+        if not isinstance(key, str):
+            raise InputError(f"{key!r:.60} is not a dotted name such as drive.speed")
+
+
 def all_changed(data: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
     """Copy plain data with the values at dotted names replaced, in order; unchanged tables are shared.
 
     >>> all_changed({"mesh": {}}, {"mesh.size": "3 mm", "mesh.element": "P1"})
     {'mesh': {'size': '3 mm', 'element': 'P1'}}
     """
+    check_changes_table(changes)
     result: dict[str, Any] = dict(data)
     copied: set[str] = set()
     for key, value in changes.items():

@@ -12,7 +12,7 @@ from typing import Annotated, Any, ClassVar
 from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler, model_validator
 from pydantic_core import CoreSchema, core_schema
 
-from tyrefem.cards import Card, Temperature, Text
+from tyrefem.cards import Card, Text, Warmth
 from tyrefem.errors import InputError, nearest
 from tyrefem.inputs.drive_table import DriveTable
 from tyrefem.inputs.motion import motion_in
@@ -57,13 +57,15 @@ class RampOf:
 
 #: Fastest wheel speed accepted, m/s: the land-speed record is 341 m/s.
 FASTEST = 400.0
+#: Shortest phase accepted, s: readings of less are one.
+SHORTEST = 1e-6
 
 
 class Phase(Card):
     """A part of the drive. The study's ``[drive]`` table gives missing keys."""
 
     name: Text = "rolling"
-    duration: Annotated[float, Unit("s", gt=0, le=1e7)]
+    duration: Annotated[float, Unit("s", ge=SHORTEST, le=1e7)]
     speed: Annotated[Ramp, RampOf(Unit("m/s", ge=0, le=FASTEST))]
     load: Annotated[Ramp, RampOf(Unit("N", ge=0))] | None = None
     deflection: Annotated[Ramp, RampOf(Unit("m", ge=0))] | None = None
@@ -128,7 +130,7 @@ class Drive(DriveTable):
     phase_card: ClassVar[type[Card]] = Phase
     # Before `initial`, whose default is an ambient temperature: an error there must name the phase.
     phases: tuple[Phase, ...]
-    initial: Temperature
+    initial: Warmth
 
     @model_validator(mode="after")
     def _distinct_names(self) -> Drive:

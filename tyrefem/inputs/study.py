@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Self
 from tyrefem import library
 from tyrefem.cards import read_toml
 from tyrefem.errors import InputError, nearest
-from tyrefem.inputs.changes import all_changed
+from tyrefem.inputs.changes import all_changed, check_changes_table
 from tyrefem.inputs.study_contents import StudyContents
 from tyrefem.inputs.study_file import write_study
 from tyrefem.inputs.uncertain_numbers import uncertain_number
@@ -56,6 +56,7 @@ class StudyData(StudyContents):
         folder = path.parent.resolve()
         # The root of a disk has no name.
         stem = (folder.name or path.stem) if path.name == "study.toml" else path.stem
+        check_changes_table({} if changes is None else changes)
         changes = dict(changes or {})
         # A changed table of cases is set before its case is selected.
         first = changes if case is None else {key: changes.pop(key) for key in list(changes) if key == "cases"}

@@ -73,16 +73,26 @@ class StudyMaterials(Brief):
 
     def warmed(self, temperatures: Mapping[str, float]) -> StudyMaterials:
         """The cards with their moduli at given mean temperatures of the regions, degC."""
+        self._check_regions(temperatures)
+        missing = [region for region in self.cards if region not in temperatures]
+        if missing:
+            raise InputError(f"every region needs a temperature; missing: {', '.join(missing)}", field="temperatures")
         cards = {region: card.warmed(temperatures[region]) for region, card in self.cards.items()}
         return StudyMaterials(self.references, self.folder, cards, self.written)
 
     def at_amplitudes(self, amplitudes: Mapping[str, float]) -> StudyMaterials:
         """The cards with their moduli at given shear strain amplitudes of the regions; others do not change."""
+        self._check_regions(amplitudes)
         cards = {
             region: card.at_amplitude(amplitudes[region]) if region in amplitudes else card
             for region, card in self.cards.items()
         }
         return StudyMaterials(self.references, self.folder, cards, self.written)
+
+    def _check_regions(self, values: Mapping[str, float]) -> None:
+        for region in values:
+            if region not in self.cards:
+                raise InputError(f"no region '{region}'{nearest(region, self.cards)}")
 
 
 def _card(

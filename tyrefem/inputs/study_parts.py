@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from tyrefem.brief import Brief
 from tyrefem.cache import Cache
-from tyrefem.errors import InputError
+from tyrefem.errors import InputError, nearest
 from tyrefem.inputs.drive_table import as_written
 from tyrefem.inputs.sensor_places import sensor_places
 from tyrefem.inputs.study_card import StudyCard
@@ -23,6 +23,9 @@ if TYPE_CHECKING:
 
 #: Worn sections, by new section and wear; studies with the same new section share the worn section.
 _WORN: Cache[Section] = Cache(size=32)
+
+#: Parts of a section's outside in a study.
+OUTSIDE = ("road", "outside_air", "rim")
 
 
 @dataclass(frozen=True, eq=False)
@@ -153,7 +156,21 @@ def _section(
         built, written = load_written(reference, near=folder)
     except InputError as error:
         raise error if error.file else error.within(field="section", file=file) from None
+    _check_sides(built, file)
     return _full(built, card), written
+
+
+def _check_sides(section: Section, file: Path | None) -> None:
+    """The surroundings of a study act on the outside by these names; a part of another name would be insulated."""
+    names = section.outer.names
+    other, missing = [name for name in names if name not in OUTSIDE], [name for name in OUTSIDE if name not in names]
+    if other or missing:
+        message = f"unknown '{other[0]}'{nearest(other[0], OUTSIDE)}" if other else f"'{missing[0]}' is missing"
+        raise InputError(
+            f"section '{section.name}', [[boundaries]]: {message}; a study wants {', '.join(OUTSIDE)}",
+            field="section",
+            file=file,
+        )
 
 
 def _full(section: Section, card: StudyCard) -> Section:

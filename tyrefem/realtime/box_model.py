@@ -141,6 +141,8 @@ def explored(
         raise error if vary or not choice.vary else error.within(field="explore") from None
     pair = axes or choice.axes
     keys = [number.key for number in plan.varied]
+    if pair is not None and not (isinstance(pair, list | tuple) and len(set(pair)) == len(pair) == 2):
+        raise InputError(f"must be two different numbers that vary, not {pair!r:.60}", field="axes")
     for key in pair or ():
         if key not in keys:
             raise InputError(f"'{key}' does not vary{nearest(key, keys)}", field="axes")

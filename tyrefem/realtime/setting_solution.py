@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from tyrefem.realtime.setting_coefficients import Coefficients
 from tyrefem.realtime.setting_data import SettingData
 from tyrefem.realtime.tyre import ATMOSPHERE, KELVIN, STANDSTILL
+from tyrefem.variants.answers import highest_name
 
 Array = NDArray[np.float64]
 
@@ -103,8 +104,9 @@ class Solution:
         read[:, tyre.lagging] = self.late
         values = {"hottest_degC": float(hot.max())}
         values |= {f"{name[:-4]}_max_degC": float(hot[:, part].max()) for name, part in tyre.hot_parts.items()}
+        regions = [name[:-4] for name in tyre.hot_parts]
         for number, name in enumerate(tyre.read_names):
-            values |= {f"{name}_degC": end[name], f"{name}_max_degC": float(read[:, number].max())}
+            values |= {f"{name}_degC": end[name], highest_name(name, regions): float(read[:, number].max())}
         air = self.states[:, tyre.size].max() if tyre.has_gas else self.coefficients.air_start
         values |= {"contained-air_degC": end["contained-air"], "contained-air_max_degC": float(air)}
         values["gas_pressure_Pa"] = end["gas_pressure"]

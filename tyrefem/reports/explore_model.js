@@ -137,6 +137,11 @@ class SettingTyre {
     this.end = this.times[this.times.length - 1];
   }
 
+  /* Name of a sensor's highest temperature; a sensor named as a region leaves the plain name to the region. */
+  highestName(sensor) {
+    return this.hotParts.some(([region]) => region === sensor) ? `${sensor}_sensor_max_degC` : `${sensor}_max_degC`;
+  }
+
   /* Places of numbers in the box: 0 and 1 are its ends. */
   place(numbers) {
     const { low, high, log } = this.arrays;
@@ -489,7 +494,7 @@ class Solution {
         if (value > highest) highest = value;
       }
       values[`${name}_degC`] = end[name];
-      values[`${name}_max_degC`] = highest;
+      values[tyre.highestName(name)] = highest;
     });
     values["contained-air_degC"] = end["contained-air"];
     let air = this.coefficients.airStart;

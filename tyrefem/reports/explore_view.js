@@ -357,12 +357,12 @@ function makeReadings() {
 function showReadings(values) {
   const answers = state.solution.answers();
   for (const { name } of lines) {
-    const cells = readingRows[name].children, highest = answers[`${name}_max_degC`];
+    const cells = readingRows[name].children, highestName = state.solution.tyre.highestName(name), highest = answers[highestName];
     cells[1].textContent = values[name].toFixed(1);
     cells[2].textContent = errorOf(name).replace("± ", "");
     cells[3].textContent = highest.toFixed(1);
-    cells[4].textContent = errorOf(`${name}_max_degC`).replace("± ", "");
-    cells[3].classList.toggle("over", limited(`${name}_max_degC`));
+    cells[4].textContent = errorOf(highestName).replace("± ", "");
+    cells[3].classList.toggle("over", limited(highestName));
     cells[1].classList.toggle("over", limited(`${name}_degC`));
   }
 }

@@ -159,7 +159,6 @@ def write_tables(result: ResultData, folder: Path, *, parquet: bool = False) -> 
 
         from tyrefem.reports.parquet import write_parquet
 
-    folder.mkdir(parents=True, exist_ok=True)
     readings: dict[str, Any] = {f"{name} [degC]": values for name, values in result.reading_columns.items()}
     readings = {"time [s]": readings.pop("time_s [degC]"), **readings}
     readings["contained-air pressure [kPa]"] = result.gas_pressure / 1e3

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from tyrefem.errors import InputError
-from tyrefem.sizes.data_book import SOURCE, DataBookRow, row_of
+from tyrefem.sizes.data_book import SOURCE, DataBookRow, row_of, rows_of
 from tyrefem.sizes.designation import INCH, TyreSize
 from tyrefem.sizes.load_index import AIRCRAFT_EXPONENT, check_carries
 from tyrefem.sizes.rim import Rim
@@ -34,12 +34,7 @@ def aircraft_numbers(size: TyreSize, rule: Rules, plies: int) -> tuple[Rim, floa
     outside, width = size.outside_diameter or 0.0, size.width
     diameter = row.rim_diameter if row else size.rim_diameter
     if diameter is None and "rim_diameter" not in rule.given:
-        raise InputError(
-            f"'{size.text}' does not name its rim and is not in the data book: write it with the rim, such as "
-            f"{size.text.split(' ')[0]}-"
-            f"{max(4, round(0.53 * outside / INCH))}, or give rim_diameter",
-            field="size",
-        )
+        raise InputError(f"'{size.text}' {_without_rim(size)}, or give rim_diameter", field="size")
     rating = row.ply_rating if row else size.ply_rating or plies
     rule(
         "ply_rating",
@@ -97,6 +92,26 @@ def aircraft_numbers(size: TyreSize, rule: Rules, plies: int) -> tuple[Rim, floa
     )
     pressure = _rated(size, rule, row, outer)
     return rim, pressure
+
+
+def _without_rim(size: TyreSize) -> str:
+    """Why the data book has no row of a size that names no rim, and how to write it with one."""
+    plain = size.text.split(" ")[0]
+    rows = rows_of(size)
+    if not rows:
+        rim = max(4, round(0.53 * (size.outside_diameter or 0.0) / INCH))
+        return f"does not name its rim and is not in the data book: write it with the rim, such as {plain}-{rim}"
+    if size.ply_rating is None or size.ply_rating in {row.ply_rating for row in rows}:
+        rims = sorted({row.rim_diameter / INCH for row in rows})
+        return (
+            f"does not name its rim and the data book has several: write {' or '.join(f'{plain}-{x:g}' for x in rims)}"
+        )
+    ratings = sorted({row.ply_rating for row in rows})
+    return (
+        "does not name its rim and the data book has other ply ratings of this size, "
+        f"{', '.join(f'{x}PR' for x in ratings)}: take one, write it with the rim, such as "
+        f"{plain}-{rows[0].rim_diameter / INCH:g}"
+    )
 
 
 def _rated(size: TyreSize, rule: Rules, row: DataBookRow | None, outer: float) -> float:

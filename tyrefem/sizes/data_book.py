@@ -71,23 +71,45 @@ def _row(row: dict[str, str]) -> DataBookRow:
     )
 
 
+def rows_of(size: TyreSize) -> list[DataBookRow]:
+    """Rows of a bias size in any spelling, all ply ratings; by prefix, diameter, width, and rim where it names one.
+
+    >>> {row.size for row in rows_of(parse_size("24.0 x 7.70"))}
+    {'24x7.7'}
+    >>> sorted({row.size for row in rows_of(parse_size("22x8"))})
+    ['22x8-10', '22x8-8']
+    """
+    if size.kind != "aircraft-bias" or size.outside_diameter is None:
+        return []
+    rows = [row for row in data_book() if _numbers(parse_size(row.size)) == _numbers(size)]
+    if size.rim_diameter is None:
+        return [row for row in rows if parse_size(row.size).rim_diameter is None] or rows
+    return [row for row in rows if _micrometres(row.rim_diameter) == _micrometres(size.rim_diameter)]
+
+
 def row_of(size: TyreSize) -> DataBookRow | None:
-    """The row of a size and ply rating; without a ply rating the middle one of the size; None: not in the book.
+    """The row of a size and ply rating; without a ply rating the middle one of the size.
+
+    None: not in the book, or the book has the size on several rims and the text names none.
 
     >>> row_of(parse_size("22x5.5 8PR")).loaded_radius / 0.0254
     9.6
     """
-    name = size.text.split(" ")[0].upper()
-    rows = sorted((row for row in data_book() if row.size.upper() == name), key=lambda row: row.ply_rating)
+    rows = sorted(rows_of(size), key=lambda row: row.ply_rating)
     if size.ply_rating is not None:
         rows = [row for row in rows if row.ply_rating == size.ply_rating]
+    if len({row.rim_diameter for row in rows}) > 1:
+        return None
     return rows[len(rows) // 2] if rows else None
 
 
-def ply_ratings(size: TyreSize) -> tuple[int, ...]:
-    """Ply ratings that the book has of a size."""
-    name = size.text.split(" ")[0].upper()
-    return tuple(sorted({row.ply_rating for row in data_book() if row.size.upper() == name}))
+def _numbers(size: TyreSize) -> tuple[str, int, int]:
+    """Prefix, diameter and width."""
+    return size.prefix, _micrometres(size.outside_diameter or 0.0), _micrometres(size.width)
+
+
+def _micrometres(length: float) -> int:
+    return round(length * 1e6)
 
 
 def of_designation(text: str) -> DataBookRow | None:

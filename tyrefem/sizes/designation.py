@@ -11,7 +11,7 @@ from tyrefem.sizes.load_index import load_of_index
 INCH, MM = 0.0254, 1e-3
 _NUMBER = r"\d{1,4}(?:\.\d{1,3})?"
 #: Load index with speed symbol, as "91V", "152/148M", "(94Y)", "98W XL".
-_SERVICE = r"(?:\s+\(?(?P<index>\d{2,3})(?:/\d{2,3})?\s*(?P<symbol>[A-HJ-NP-Y])\)?)?(?:\s+XL)?"
+_SERVICE = r"(?:\s+\(?(?P<index>\d{2,3})(?:/\d{2,3})?\s*(?P<symbol>[A-HJ-NP-Y])\)?)?(?:\s*XL)?"
 _PLIES = r"(?:\s*,?\s*(?P<plies>\d{1,2})\s*-?\s*(?:PR|ply))?"
 _METRIC = re.compile(
     rf"(?P<service>P|LT)?\s?(?P<width>\d{{3}})/(?P<series>\d{{2,3}})\s?Z?(?P<build>R|-|D|B)F?\s?"
@@ -75,6 +75,12 @@ class TyreSize:
     def section_height(self) -> float | None:
         """Height of the section by the designation, m."""
         return None if self.series is None else self.series * self.width
+
+    @property
+    def prefix(self) -> str:
+        """Letter before an aircraft size, B, C or H (how narrow its rim is); else nothing."""
+        first = self.text[:1].upper()
+        return first if first in {"B", "C", "H"} else ""
 
 
 def parse_size(text: object) -> TyreSize:
@@ -161,7 +167,7 @@ def _tubeless(match: re.Match[str]) -> str:
 
 
 def _tidy(text: str) -> str:
-    return re.sub(r"\s?[×X]\s?", "x", text)
+    return re.sub(r"(?<=\d)\s?[x×X]\s?(?=\d)", "x", text)
 
 
 def _plies(match: re.Match[str]) -> int | None:
@@ -177,17 +183,24 @@ def _listed() -> str:
 
 
 def _nearest(text: str) -> str:
-    """The nearest valid form: the text's own numbers put as a size is written."""
-    numbers = re.findall(r"\d+(?:\.\d+)?", text)
+    """The nearest valid form: the text's own numbers put as a size is written, with what stands before and after."""
+    numbers = list(re.finditer(r"\d+(?:\.\d+)?", text))
+    values = [number[0] for number in numbers]
     attempts = []
-    if len(numbers) >= 3:
-        a, b, c = numbers[:3]
+    if len(values) >= 3:
+        a, b, c = values[:3]
         attempts = [f"{a}/{b}R{c}", f"{a}x{b}-{c}"]
-    elif len(numbers) == 2:
-        attempts = [f"{numbers[0]}x{numbers[1]}", f"{numbers[0]}R{numbers[1]}"]
+    elif len(values) == 2:
+        attempts = [f"{values[0]}x{values[1]}", f"{values[0]}R{values[1]}"]
     if "x" in text.lower():
         attempts.reverse()
-    for attempt in attempts:
+    before = text[: numbers[0].start()].strip().upper() if numbers else ""
+    after = text[numbers[min(len(numbers), 3) - 1].end() :] if numbers else ""
+    for attempt in (
+        whole
+        for plain in attempts
+        for whole in (f"{before}{plain}{after}", f"{before}{plain}", f"{plain}{after}", plain)
+    ):
         if not any(form.fullmatch(attempt) for form in (_METRIC, _TRUCK, _AIRCRAFT)):
             continue
         try:

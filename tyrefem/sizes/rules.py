@@ -23,6 +23,8 @@ UNITS = {
     "1/m": ("1/m", 1.0),
     "1": ("1", 1.0),
 }
+#: Numbers that count things.
+COUNTS = ("plies", "belt_plies", "ply_rating", "grooves")
 
 
 @dataclass(frozen=True)
@@ -78,6 +80,8 @@ class Rules:
                 value, source = parse(self.given[name], UNITS[unit][0]), "given"
             except InputError as error:
                 raise error.within(field=f"parameters.{name}") from None
+            if name in COUNTS and not float(value).is_integer():
+                raise InputError(f"must be a whole number, not {value:g}", field=f"parameters.{name}")
         if not low <= value <= high:
             limits = f"{written(low, unit)} to {written(high, unit)}"
             raise InputError(

@@ -16,6 +16,7 @@ from tyrefem.measured.cases import Case
 from tyrefem.simulation.estimate import RunEstimate
 from tyrefem.simulation.run import run
 from tyrefem.sizes import drawn_of
+from tyrefem.variants.answers import check_sensor_names
 
 if TYPE_CHECKING:
     from tyrefem.simulation.result import ResultData
@@ -53,6 +54,7 @@ class CampaignData(Brief):
         InputError : the study names no table, or the table or a case is invalid (with file and line). A case whose
             tyre size gives no section is not refused: its row of the answers says why.
         """
+        check_sensor_names(study)
         for case in study.cases:
             try:
                 study.case_study(case)

@@ -17,7 +17,7 @@ from tyrefem.quantity import parse
 from tyrefem.sweep.evaluation import Evaluator
 from tyrefem.sweep.question import SweepQuestion
 from tyrefem.variants.answer_units import name_of, shown
-from tyrefem.variants.answers import check_answer
+from tyrefem.variants.answers import check_answer, check_sensor_names
 from tyrefem.variants.card import EnvelopeCard, SweepCard
 from tyrefem.variants.execution import Execution, ExecutionOptions
 from tyrefem.variants.outcomes import Failed, Outcome
@@ -40,6 +40,7 @@ def checked_pairs(study: StudyData, card: EnvelopeCard) -> list[tuple[str, str]]
     ------
     InputError : as in `envelope`.
     """
+    check_sensor_names(study)
     try:
         check_answer(card.answer, study)
     except InputError as error:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import fnmatch
 import functools
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -105,6 +105,24 @@ def answer_names(study: StudyData, time_to: float | None = None) -> list[str]:
     return all_names if time_to is not None else [name for name in all_names if name != TIME_TO]
 
 
+def highest_name(sensor: str, regions: Iterable[str]) -> str:
+    """Name of a sensor's highest temperature; a sensor named as a region leaves the plain name to the region.
+
+    >>> highest_name("crown", ["tread"]), highest_name("tread", ["tread"])
+    ('crown_max_degC', 'tread_sensor_max_degC')
+    """
+    return f"{sensor}_sensor_max_degC" if sensor in regions else f"{sensor}_max_degC"
+
+
+def check_sensor_names(study: StudyData) -> None:
+    """Raise `InputError` for a sensor whose last reading has the name of another answer, such as ``hottest_degC``."""
+    everything = answer_names(study)
+    for name in study.sensors:
+        if everything.count(f"{name}_degC") > 1:
+            message = f"'{name}_degC' would be an answer of this sensor and another one too: name the sensor otherwise"
+            raise InputError(f"{message}, e.g. '{name}-sensor'", field=f"sensors.{name}")
+
+
 def check_answer(name: str, study: StudyData, time_to: float | None = None) -> None:
     """Raise `InputError`, with the nearest name, if a study has no such answer."""
     known = answer_names(study, time_to)
@@ -134,12 +152,17 @@ def hottest(result: FinishedRun, _: float | None) -> Answers:
     }
 
 
-@answer(lambda study: [f"{name}{end}" for end in ("_degC", "_max_degC") for name in study.sensors])
+@answer(
+    lambda study: [
+        *(f"{name}_degC" for name in study.sensors),
+        *(highest_name(name, study.section.regions) for name in study.sensors),
+    ]
+)
 def sensors(result: FinishedRun, _: float | None) -> Answers:
     """Temperature of every sensor at the end, and its maximum."""
-    read = result.recorded
+    read, regions = result.recorded, result.study.section.regions
     return {f"{name}_degC": float(series[-1]) for name, series in read.items()} | {
-        f"{name}_max_degC": float(series.max()) for name, series in read.items()
+        highest_name(name, regions): float(series.max()) for name, series in read.items()
     }
 
 

@@ -54,8 +54,8 @@ class LimitCard(Card):
     """Limits of an answer, in the unit of the answer (`hottest_degC` in degC)."""
 
     kind: ClassVar[str] = "sweep"
-    below: float | None = None
-    above: float | None = None
+    below: Annotated[float, Field(allow_inf_nan=False)] | None = None
+    above: Annotated[float, Field(allow_inf_nan=False)] | None = None
 
     @model_validator(mode="after")
     def _some(self) -> LimitCard:
@@ -116,7 +116,7 @@ class EnvelopeCard(Card):
     """
 
     kind: ClassVar[str] = "sweep"
-    below: float
+    below: Annotated[float, Field(allow_inf_nan=False)]
     answer: Text = "hottest_degC"
     loads: tuple[Text, ...] = ()
     pressures: tuple[Text, ...] = ()

@@ -15,7 +15,7 @@ from tyrefem.inputs.study import StudyData
 from tyrefem.inputs.uncertain_numbers import left_out
 from tyrefem.mechanics.cycle_schedule import check_cases
 from tyrefem.quantity import written
-from tyrefem.variants.answers import check_answer
+from tyrefem.variants.answers import check_answer, check_sensor_names
 from tyrefem.variants.card import LimitCard, SweepCard, VaryCard
 from tyrefem.variants.links import Links, check_apart, check_links, members
 from tyrefem.variants.samples import Counted, Grid, check_distinct, drawn, listed, size_of
@@ -109,6 +109,7 @@ def planned(study: StudyData, card: SweepCard, near: Path | None = None) -> Plan
     InputError : a name that the study does not have, a value that it refuses, two equal variants, or more variants
         than fit in memory.
     """
+    check_sensor_names(study)
     for name in (*card.limits, *card.answers, *card.pareto):
         try:
             check_answer(name, study, card.time_to)

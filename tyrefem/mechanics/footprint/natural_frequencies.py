@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from numbers import Integral
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -188,10 +189,10 @@ def natural_frequencies(
     from tyrefem.mechanics.solid.inflation import inflate
 
     NEEDS.check(study)
-    orders = tuple(dict.fromkeys(int(n) for n in harmonics))
-    if not orders or not all(0 <= n <= HIGHEST for n in orders):
-        raise InputError(f"must be whole numbers from 0 to {HIGHEST}, not {list(orders)}", field="harmonics")
-    if not 1 <= count <= MOST:
+    orders = tuple(dict.fromkeys(harmonics)) if isinstance(harmonics, Iterable) else ()
+    if not orders or not all(isinstance(n, Integral) and 0 <= n <= HIGHEST for n in orders):
+        raise InputError(f"must be whole numbers from 0 to {HIGHEST}, not {harmonics!r:.60}", field="harmonics")
+    if not (isinstance(count, Integral) and 1 <= count <= MOST):
         raise InputError(f"must be a whole number from 1 to {MOST}, not {count}", field="count")
     pressure = study.card.drive.phases[0].pressure.start if pressure is None else pressure
     if not pressure > 0:

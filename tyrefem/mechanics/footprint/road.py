@@ -39,7 +39,11 @@ class Road:
                 "the diameter of the drum must be positive; infinite is a flat road", field="drum_diameter"
             )
         if not abs(self.camber) < 0.6:
-            raise InputError("camber must lie between -0.6 and 0.6 rad", field="camber")
+            most = math.degrees(0.6)
+            raise InputError(
+                f"must be between -{most:.1f} and {most:.1f} deg, not {math.degrees(self.camber):.4g} deg",
+                field="camber",
+            )
 
     def in_road_axes(self, points: Array) -> Array:
         """(3, ...) points with y along the road's normal."""

@@ -125,15 +125,16 @@ def tyre_forces(
 
     Parameters
     ----------
-    loads : N; by default `LOADS` times the drive's load.
+    loads : N; by default `LOADS` times the drive's load. The nominal load is the drive's, or their mean where the
+        drive's is none of theirs.
     slip_angles : rad, either sign. cambers : rad, beside none. slips : 1.
     harmonics : of all points. progress : called with the number of curves done, and of all.
     wheel : as in `roll`, without load, deflection and camber.
 
     Raises
     ------
-    InputError : errors of `roll`; a drive without a load, where no loads are given; fewer than two loads; a load that
-        is not positive.
+    InputError : errors of `roll`; a drive without a load, where no loads are given; fewer than two different loads; a
+        load that is not positive.
     """
     for name in ("load", "deflection", "camber"):
         if name in wheel:
@@ -143,12 +144,14 @@ def tyre_forces(
         if phase.load is None:
             raise InputError("the drive gives no load: give the loads", field="loads")
         loads = [share * phase.load.start for share in LOADS]
-    if len(loads) < 2:
-        raise InputError("give at least two loads: the Magic Formula goes over load", field="loads")
     for load in loads:
         if not load > 0:
             raise InputError(f"must be more than 0 N, not {load:g} N", field="loads")
-    nominal = phase.load.start if phase.load is not None else float(np.mean(loads))
+    if len(set(loads)) < 2:
+        raise InputError("give at least two different loads: the Magic Formula goes over load", field="loads")
+    nominal = float(np.mean(loads))
+    if phase.load is not None and min(loads) <= phase.load.start <= max(loads):
+        nominal = phase.load.start
     on_road = wheel_on_road(study, load=nominal, **wheel)
     rows: list[dict[str, float]] = []
     pairs = [(camber, load) for camber in dict.fromkeys((0.0, *cambers)) for load in loads]

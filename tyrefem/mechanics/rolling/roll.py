@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
 from tyrefem.errors import InputError
+from tyrefem.inputs.drive import FASTEST
 from tyrefem.inputs.study_plugins import plugin_summary
 from tyrefem.mechanics.footprint.compliance import TreadCompliance
 from tyrefem.mechanics.footprint.contact import LADDER
@@ -37,6 +38,8 @@ Array = NDArray[np.float64]
 NEEDS = Requirements("rolling with friction")
 #: Coefficient of friction by default: rubber on dry asphalt. An estimate.
 FRICTION = 1.0
+#: Least coefficient by which a road holds a tyre that rolls.
+LEAST_FRICTION = 1e-3
 #: Allowed change of the horizontal force with the number of harmonics.
 TOLERANCE = 0.05
 #: Numbers of harmonics, tried in turn; the first is only compared with.
@@ -226,11 +229,17 @@ def wheel_on_road(
 
     Raises
     ------
-    InputError : errors of `press`; a negative friction or speed.
+    InputError : errors of `press`; a friction below `LEAST_FRICTION`; a speed that is not positive, or above 400 m/s.
     """
     NEEDS.check(study)
     if speed is not None and not speed > 0:
         raise InputError(f"must be more than 0 m/s, not {speed:g} m/s", field="speed")
+    if speed is not None and speed > FASTEST:
+        raise InputError(f"must be at most {FASTEST:g} m/s, not {speed:g} m/s", field="speed")
+    if isinstance(friction, int | float) and not friction >= LEAST_FRICTION:
+        raise InputError(
+            f"must be at least {LEAST_FRICTION:g}, not {friction:g}: less holds no rolling tyre", field="friction"
+        )
     pressed = press(study, speed=speed, load=load, deflection=deflection, motion=motion, **pressing)
     phase = study.card.drive.phases[0]
     if load is None and deflection is None:

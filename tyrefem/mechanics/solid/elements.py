@@ -123,7 +123,16 @@ class Rings:
         """scikit-fem basis on the facets of a named boundary."""
         import skfem
 
-        return skfem.FacetBasis(self.mesh, skfem.ElementQuad2(), facets=self.boundary(name), intorder=INTORDER)
+        facets = self.boundary(name)
+        try:
+            return skfem.FacetBasis(self.mesh, skfem.ElementQuad2(), facets=facets, intorder=INTORDER)
+        except Exception as error:  # scikit-fem raises a bare Exception where its own iteration does not converge
+            if "Newton" not in str(error):
+                raise
+            raise InputError(
+                f"an element at '{name}' is distorted too far to be computed with: less speed, load or pressure, or a "
+                "smaller mesh.size"
+            ) from None
 
     def region_of(self, element: int) -> str:
         """Name of the region that holds an element."""
