@@ -24,7 +24,7 @@ COMBINED: dict[str, dict[str, float]] = {
         "RBY1": 0, "RBY2": 0, "RBY3": 0, "RBY4": 0, "RCY1": 1, "REY1": 0, "REY2": 0, "RHY1": 0, "RHY2": 0, "RVY1": 0,
         "RVY2": 0, "RVY3": 0, "RVY4": 0, "RVY5": 0, "RVY6": 0,
     },
-    "ALIGNING": {"QDZ10": 0, "QDZ11": 0, "SSZ1": 0, "SSZ2": 0, "SSZ3": 0, "SSZ4": 0},
+    "ALIGNING": {"SSZ1": 0, "SSZ2": 0, "SSZ3": 0, "SSZ4": 0},
 }  # fmt: skip
 #: Width of names.
 WIDTH = 24
