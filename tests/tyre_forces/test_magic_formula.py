@@ -168,6 +168,7 @@ def test_a_tir_file_has_every_section_once(fit):
         ("FITTYP = 52\n", "must be 61, not 52"),
         ("FITTYP = 61\nPCY1 = many\n", "line 2: 'many' is not a number"),
         ("FITTYP = 61\nNOMPRES = 2e5\nUNLOADED_RADIUS = 0.3\n", "is missing"),
+        ("FITTYP = 61\nFNOMIN = 4e3\nNOMPRES = 2e5\nUNLOADED_RADIUS = 0.3\nLMUY = 0.8\n", "must be 1, not 0.8"),
     ],
 )
 def test_a_wrong_tir_file_is_one_clear_error(text, message, tmp_path):
