@@ -40,6 +40,17 @@ def test_a_converted_number_reads_back_the_same(units, value):
 
 # Definitions: the inch 25.4 mm, the pound-force 0.45359237 kg times 9.80665 m/s2, the thermochemical calorie 4.184 J.
 @pytest.mark.parametrize(
+    ("text", "unit"),
+    [("10 rad/s", "Hz"), ("600 rpm", "Hz"), ("1 turn/s", "Hz"), ("2 deg", "1"), ("0.03 rad", "1"), ("5 %", "rad")],
+)
+def test_angles_are_no_numbers(text, unit):
+    """pint gives angles no dimension: it would read 10 rad/s as 10 Hz, not as 10/(2 pi) Hz."""
+    with pytest.raises(InputError, match=r"is (a|an) (angle|number)"):
+        parse(text, unit)
+    assert parse("10 1/s", "Hz") == parse("10 Hz", "Hz") == 10.0
+
+
+@pytest.mark.parametrize(
     ("text", "unit", "exact"),
     [
         ("22 in", "m", 22 * 0.0254),

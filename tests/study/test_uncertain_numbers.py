@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 
 import tyrefem as tf
+from tyrefem.errors import InputError
+from tyrefem.inputs.changes import scaled
 from tyrefem.inputs.uncertain_numbers import UncertainNumber, left_out, stated_deviations, uncertain_number
 from tyrefem.materials.reads import STIFFNESS, tables_read
 from tyrefem.mechanics.cycle_schedule import cycle_schedule
@@ -180,3 +182,14 @@ def test_the_other_laws_read_what_they_say(law: str) -> None:
                 continue
             changed = energy(study.scaled(f"materials.{region}.{table}.{field}", 1.1))
             assert same(changed, before) == (table not in reads.get(region, ())), (region, table)
+
+
+@pytest.mark.parametrize("ambient", ["25 degC", "77 degF"])
+def test_a_share_of_a_temperature_is_refused(ambient: str) -> None:
+    """10 % of 25 degC were 2.5 K, of the same 77 degF 4.3 K."""
+    with pytest.raises(InputError, match="is a temperature"):
+        _ = tf.study(BIAS, {"drive.ambient": ambient, "uncertainty": {"drive.ambient": "10 %"}}).uncertain_numbers
+    with pytest.raises(InputError, match="is a temperature"):
+        tf.study(BIAS, {"drive.ambient": ambient}).scaled("drive.ambient", 1.1)
+    with pytest.raises(InputError, match="is a temperature"):
+        scaled({"unit": ambient.split()[1], "values": [20.0, 30.0]}, 1.1)

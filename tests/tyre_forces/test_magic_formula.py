@@ -66,6 +66,22 @@ def test_moment_is_force_times_trail_near_straight_ahead():
     assert tyre.aligning_moment(4000.0, 0.01) > 0 > tyre.lateral_force(4000.0, 0.01)
 
 
+def test_residual_moment_of_camber_rises_with_pressure_and_has_its_square():
+    """Pacejka 2012, 4.E47, at alpha = 0 without side force: F_z R_0 ((q_Dz8 (1 + p_pz2 dpi) + q_Dz10 |g|) g."""
+    bare = {"PCY1": 1.3, "PDY1": 1.0, "PKY1": -20.0, "PKY2": 1.5, "PKY4": 2.0, "QBZ10": 1.0}
+    tyre = MagicFormula(bare | {"QDZ8": -0.1, "PPZ2": 0.5, "QDZ10": 0.2, "QDZ11": 0.4}, 4000.0, 2.2e5, 0.31)
+    camber = np.array([-0.05, 0.05])
+    moments = tyre.aligning_moment(5000.0, 0.0, camber, 1.1 * 2.2e5)
+    expected = 5000.0 * 0.31 * (-0.1 * (1 + 0.5 * 0.1) + (0.2 + 0.4 * 0.25) * 0.05) * camber
+    assert moments == pytest.approx(expected, rel=1e-9)
+
+
+def test_a_tir_file_of_camber_squared_is_read(tmp_path):
+    path = tmp_path / "tyre.tir"
+    path.write_text("FITTYP = 61\nFNOMIN = 4000\nNOMPRES = 2.2e5\nUNLOADED_RADIUS = 0.31\nQDZ10 = 0.2\nQDZ11 = 0.1\n")
+    assert read_tir(path).coefficients == {"QDZ10": 0.2, "QDZ11": 0.1}
+
+
 def test_fit_gives_the_coefficients_back(fit):
     assert max(fit.errors.values()) < 1e-7
     for name in fit.fitted:
@@ -152,6 +168,7 @@ def test_a_tir_file_has_every_section_once(fit):
         ("FITTYP = 52\n", "must be 61, not 52"),
         ("FITTYP = 61\nPCY1 = many\n", "line 2: 'many' is not a number"),
         ("FITTYP = 61\nNOMPRES = 2e5\nUNLOADED_RADIUS = 0.3\n", "is missing"),
+        ("FITTYP = 61\nFNOMIN = 4e3\nNOMPRES = 2e5\nUNLOADED_RADIUS = 0.3\nLMUY = 0.8\n", "must be 1, not 0.8"),
     ],
 )
 def test_a_wrong_tir_file_is_one_clear_error(text, message, tmp_path):

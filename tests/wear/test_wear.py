@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -47,6 +48,21 @@ def test_exponent_and_slipping_backwards() -> None:
     once, twice = rings(50.0, exponent=2.0), rings(100.0, exponent=2.0)
     np.testing.assert_allclose(twice.depth_per_km / once.depth_per_km, 4.0, rtol=1e-12)
     assert Wear.check(TABLE).of([-1.0, 0.0]).tolist() == [0.0, 0.0]
+
+
+@pytest.mark.fast
+def test_transverse_grooves_bear_no_friction() -> None:
+    """The same power on less rubber wears deeper, and the same volume (exponent 1)."""
+    solid = rings()
+    cut = replace(solid, rubber=0.8)
+    np.testing.assert_allclose(cut.depth_per_km, solid.depth_per_km / 0.8, rtol=1e-12)
+    assert cut.volume_per_km == pytest.approx(solid.volume_per_km, rel=1e-12)
+
+
+def test_the_sections_pattern_counts_in_state_and_drive() -> None:
+    pattern = {"void": 0.1, "block_length": "20 mm", "source": "test"}
+    study = tf.study("nasa-22x5.5-8pr", {**DRIVE, "drive.duration": "10 s", "section.pattern": pattern})
+    assert [study.roll(slip_angle=0.01).wear().rubber, study.wear().rubber] == pytest.approx([0.9, 0.9])
 
 
 DRIVE = {

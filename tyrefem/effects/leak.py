@@ -17,7 +17,7 @@ def deflection_change(tyre: Tyre, t: float, pressure_factor: float) -> float:
 def no_load(study: StudyOfTyre) -> str | None:
     """Why pressure does not matter in a study: its drive gives the deflection, or its law knows no pressure."""
     if study.card.mechanics.load_law.law == "vertical-stiffness":
-        return "the load law 'vertical-stiffness' does not depend on pressure"
+        return "the deflection is that of mechanics.load_law, and 'vertical-stiffness' does not depend on pressure"
     if all(phase.load is None for phase in study.card.drive.phases):
         return "the drive gives the deflection, which pressure then does not change"
     return None

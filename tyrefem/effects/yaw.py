@@ -15,7 +15,10 @@ from tyrefem.effects.tyre import StudyOfTyre, Tyre
 
 
 class Yaw(Effect):
-    """Flux into the tread as of `tread-slip`, times 1 + z_s / z_shoulder towards the loaded side."""
+    """Flux into the tread as of `tread-slip`, times 1 + z_s / z_shoulder towards the loaded side.
+
+    ``right`` is the side z > 0, as a section is drawn; seen along the way it is the wheel's left (`tyrefem roll`).
+    """
 
     name: ClassVar[str] = "yaw"
     family: ClassVar[str] = "asymmetry"
@@ -35,7 +38,7 @@ class Yaw(Effect):
 
     surfaces: ClassVar[tuple[str, ...]] = ("road",)
 
-    side: Annotated[Literal["left", "right"], Field(description="loaded side, left or right")] = "right"
+    side: Annotated[Literal["left", "right"], Field(description="loaded side as drawn: right is z > 0")] = "right"
     slip: Annotated[float, Prior("1", "sideways sliding speed over the tyre's speed", 0.01, 0.0, 0.2)] = 0.0
 
     def flux(self, tyre: Tyre, surface: str, x: Array, t: float) -> Factor:

@@ -16,6 +16,8 @@ from tyrefem.sizes import completed_materials, is_size, with_numbers
 #: Tables whose text value names a card: a change of a value below it overrides the card's value.
 _REFERENCES = {"section": "section", "materials.*": "material"}
 _AMOUNT = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)(.*)$", re.DOTALL)
+#: Units of temperatures whose zero is arbitrary.
+_SCALES = re.compile(r"\s*(deg[CF]|degree_(Celsius|Fahrenheit)|celsius|fahrenheit|°\s?[CF])\s*")
 
 
 def changed(data: Mapping[str, Any], key: str, value: Any) -> dict[str, Any]:
@@ -187,6 +189,10 @@ def scaled(value: Any, factor: float, significant: int | None = None) -> Any:
 
     The first column of a table's rows is not changed: temperatures, frequencies, places.
 
+    Raises
+    ------
+    InputError : no number; a temperature in degC or degF, of which a factor is another change on each scale.
+
     >>> scaled("20 mph", 1.5), scaled("20 mph", 1.23456, significant=3), scaled(0.1, 1.23456, significant=3)
     ('30 mph', '24.7 mph', 0.123)
     >>> scaled({"unit": "mm", "values": [1.0, 2.0]}, 1.5)
@@ -199,6 +205,8 @@ def scaled(value: Any, factor: float, significant: int | None = None) -> Any:
     if isinstance(value, int | float):
         return value * factor if significant is None else float(f"{value * factor:.{significant}g}")
     if isinstance(value, Mapping) and set(value) == {"unit", "values"}:
+        if _SCALES.fullmatch(str(value["unit"])):
+            raise _no_factor(f"{value['values']} {value['unit']}")
         return {"unit": value["unit"], "values": [scaled(entry, factor, significant) for entry in value["values"]]}
     if isinstance(value, list):
         if value and all(isinstance(row, list) and row for row in value):
@@ -207,4 +215,10 @@ def scaled(value: Any, factor: float, significant: int | None = None) -> Any:
     match = _AMOUNT.match(value) if isinstance(value, str) else None
     if match is None:
         raise InputError(f"{value!r} is not a number that can be scaled")
+    if _SCALES.fullmatch(match[2]):
+        raise _no_factor(repr(value))
     return f"{float(match[1]) * factor:.{significant or 12}g}{match[2]}"
+
+
+def _no_factor(value: str) -> InputError:
+    return InputError(f"{value} is a temperature: a factor of it means nothing; write it in K, or give values")

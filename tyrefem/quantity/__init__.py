@@ -28,6 +28,8 @@ _UNIT = re.compile(
     r"(?:1\s*/)?(?:[^\W\d][\w°%]*+|[°%][^\W\d]*+|[()\s/·]|\*(?!\*)|[⁻⁰¹²³⁴]+"
     r"|(?:\*\*|\^)\s*\(?\s*-?\d(?:\.\d+)?\s*\)?(?!\d|\s*(?:\*\*|\^)))+"
 )
+#: Units of angles, which pint counts as numbers: 1 turn is 2 pi.
+_ANGLE = re.compile(r"radian|degree(?!_)|turn|revolution|arcminute|arcsecond|grade")
 _EXAMPLES = {
     "m": "'0.6 in' or '15 mm'",
     "m/s": "'20 mph' or '9 m/s'",
@@ -184,9 +186,22 @@ def _convert(magnitude: float, text: str, unit: str, value: object, wanted: str)
     if unit == "degC" and "delta" in given:
         raise InputError(f"{value!r} is a difference of temperatures, but a temperature is wanted: 'degC'")
     try:
-        return _converted(magnitude, text, unit)
+        converted = _converted(magnitude, text, unit)
     except Exception as error:  # dimensionality or offset units: the same advice to the user
         raise InputError(f"'{text}' is not a unit of this quantity ({value!r}); expected {wanted}") from error
+    _check_angle(given, unit, value, wanted)
+    return converted
+
+
+def _check_angle(given: str, unit: str, value: object, wanted: str) -> None:
+    """Refuse what pint takes for the same because an angle has no dimension."""
+    angle = _ANGLE.search(given) is not None
+    if unit == "Hz" and angle:
+        raise InputError(f"{value!r} is an angle per time, but cycles per time are wanted: 1 Hz is 2 pi rad/s")
+    if unit == "1" and angle:
+        raise InputError(f"{value!r} is an angle, but a number is wanted: {wanted}")
+    if unit == "rad" and not angle:
+        raise InputError(f"{value!r} is a number, but an angle is wanted: {wanted}")
 
 
 @functools.lru_cache(maxsize=512)

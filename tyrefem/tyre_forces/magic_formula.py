@@ -18,8 +18,8 @@ TABLES = {
     "LONGITUDINAL": "PCX1 PDX1 PDX2 PDX3 PEX1 PEX2 PEX3 PEX4 PKX1 PKX2 PKX3 PHX1 PHX2 PVX1 PVX2 PPX1 PPX2 PPX3 PPX4",
     "LATERAL": "PCY1 PDY1 PDY2 PDY3 PEY1 PEY2 PEY3 PEY4 PEY5 PKY1 PKY2 PKY3 PKY4 PKY5 PKY6 PKY7 PHY1 PHY2 PVY1 PVY2 "
     "PVY3 PVY4 PPY1 PPY2 PPY3 PPY4 PPY5",
-    "ALIGNING": "QBZ1 QBZ2 QBZ3 QBZ4 QBZ5 QBZ9 QBZ10 QCZ1 QDZ1 QDZ2 QDZ3 QDZ4 QDZ6 QDZ7 QDZ8 QDZ9 QEZ1 QEZ2 QEZ3 QEZ4 "
-    "QEZ5 QHZ1 QHZ2 QHZ3 QHZ4 PPZ1 PPZ2",
+    "ALIGNING": "QBZ1 QBZ2 QBZ3 QBZ4 QBZ5 QBZ9 QBZ10 QCZ1 QDZ1 QDZ2 QDZ3 QDZ4 QDZ6 QDZ7 QDZ8 QDZ9 QDZ10 QDZ11 QEZ1 "
+    "QEZ2 QEZ3 QEZ4 QEZ5 QHZ1 QHZ2 QHZ3 QHZ4 PPZ1 PPZ2",
 }
 NAMES = {part: tuple(text.split()) for part, text in TABLES.items()}
 ALL = tuple(name for names in NAMES.values() for name in names)
@@ -137,7 +137,9 @@ class MagicFormula(Brief):
         force, across, up, slope = self._lateral(load, slip_angle, camber, pressure)
         stiffness = self.cornering_stiffness(load, camber, pressure)
         x = np.asarray(slip_angle) + across + up / (stiffness + np.copysign(TINY, stiffness))
-        size = q["QDZ6"] + q["QDZ7"] * dfz + (q["QDZ8"] + q["QDZ9"] * dfz) * (1 - q["PPZ2"] * dpi) * camber
+        by_camber = (q["QDZ8"] + q["QDZ9"] * dfz) * (1 + q["PPZ2"] * dpi)
+        by_camber = by_camber + (q["QDZ10"] + q["QDZ11"] * dfz) * np.abs(camber)
+        size = q["QDZ6"] + q["QDZ7"] * dfz + by_camber * camber
         residual = load * self.radius * size * np.cos(np.arctan((q["QBZ9"] + q["QBZ10"] * slope) * x))
         return -self.trail(load, slip_angle, camber, pressure) * force + residual * np.cos(slip_angle)
 

@@ -17,6 +17,10 @@ from tyrefem.tyre_forces.magic_formula import ALL, NAMES, MagicFormula
 SCALING = (
     "LFZO LCX LMUX LEX LKX LHX LVX LCY LMUY LEY LKY LHY LVY LTR LRES LXAL LYKA LVYKA LS LKYC LKZC LMUV LMX LVMX LMY LMP"
 )
+#: Those that act on pure slip: a file whose factor is not 1 holds other forces than its coefficients say.
+OF_PURE_SLIP = tuple(
+    name for name in SCALING.split() if name not in {"LXAL", "LYKA", "LVYKA", "LS", "LMUV", "LMX", "LVMX", "LMY", "LMP"}
+)
 #: Of combined slip: shape factors 1 and slopes 0 leave each pure force as it is.
 COMBINED: dict[str, dict[str, float]] = {
     "LONGITUDINAL": {"RBX1": 0, "RBX2": 0, "RBX3": 0, "RCX1": 1, "REX1": 0, "REX2": 0, "RHX1": 0},
@@ -24,7 +28,7 @@ COMBINED: dict[str, dict[str, float]] = {
         "RBY1": 0, "RBY2": 0, "RBY3": 0, "RBY4": 0, "RCY1": 1, "REY1": 0, "REY2": 0, "RHY1": 0, "RHY2": 0, "RVY1": 0,
         "RVY2": 0, "RVY3": 0, "RVY4": 0, "RVY5": 0, "RVY6": 0,
     },
-    "ALIGNING": {"QDZ10": 0, "QDZ11": 0, "SSZ1": 0, "SSZ2": 0, "SSZ3": 0, "SSZ4": 0},
+    "ALIGNING": {"SSZ1": 0, "SSZ2": 0, "SSZ3": 0, "SSZ4": 0},
 }  # fmt: skip
 #: Width of names.
 WIDTH = 24
@@ -106,7 +110,8 @@ def read_tir(path: Path) -> MagicFormula:
 
     Raises
     ------
-    InputError : no such file; another FITTYP; a number that cannot be read; nominal load, pressure or radius missing.
+    InputError : no such file; another FITTYP; a number that cannot be read; nominal load, pressure or radius missing; a
+        scaling factor of pure slip that is not 1.
     """
     try:
         lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
@@ -128,5 +133,9 @@ def read_tir(path: Path) -> MagicFormula:
     for name in ("FNOMIN", "NOMPRES", "UNLOADED_RADIUS"):
         if name not in values:
             raise InputError("is missing", file=path, field=name)
+    for name in OF_PURE_SLIP:
+        if values.get(name, 1.0) != 1.0:
+            message = f"must be 1, not {values[name]:g}: the formula has no scaling factors"
+            raise InputError(message, file=path, field=name)
     coefficients = {name: values[name] for name in ALL if name in values}
     return MagicFormula(coefficients, values["FNOMIN"], values["NOMPRES"], values["UNLOADED_RADIUS"])

@@ -14,7 +14,7 @@ from tyrefem.errors import InputError
 from tyrefem.materials.wear import Wear
 from tyrefem.mechanics.cycle_schedule import CycleSchedule, cycle_schedule
 from tyrefem.simulation.run import run
-from tyrefem.wear.ring_wear import RingWear, tread_table
+from tyrefem.wear.ring_wear import RingWear, rubber_share, tread_table
 
 if TYPE_CHECKING:
     from tyrefem.inputs.study import StudyData
@@ -72,7 +72,8 @@ def drive_wear(study: StudyData) -> DriveWear:
     if not total > 0:
         raise InputError("the tyre never rolls under load: no wear", field="drive", file=study.file)
     rings = {place: _rings(schedule, place) for place in distances}
-    states = {place: _state(friction, table) for place, friction in rings.items()}
+    rubber = rubber_share(study)
+    states = {place: _state(friction, table, rubber) for place, friction in rings.items()}
     by_phase = {}
     for number, phase in enumerate(study.card.drive.phases):
         ours = {place: distance for place, distance in distances.items() if place[0] == number}
@@ -90,7 +91,7 @@ def drive_wear(study: StudyData) -> DriveWear:
     speed = total / study.card.drive.end
     return DriveWear(
         first.places, first.widths, work_per_metre * speed, 2 * np.pi * speed * turns, 1 / turns, table,
-        tuple(states.values()), shares, total, by_phase,
+        rubber, tuple(states.values()), shares, total, by_phase,
     )  # fmt: skip
 
 
@@ -118,7 +119,7 @@ def _rings(schedule: CycleSchedule, place: tuple[int, int]) -> FrictionRings:
     return friction
 
 
-def _state(friction: FrictionRings, table: Wear) -> RingWear:
+def _state(friction: FrictionRings, table: Wear, rubber: float) -> RingWear:
     """Wear of a state at 1 m/s: the energy of a passing does not depend on the speed."""
     travel = friction.travel
-    return RingWear(friction.places, friction.widths, friction.work, 1 / travel, 2 * np.pi * travel, table)
+    return RingWear(friction.places, friction.widths, friction.work, 1 / travel, 2 * np.pi * travel, table, rubber)

@@ -29,11 +29,12 @@ class RingWear(Brief):
 
     A ring passes the footprint once per revolution with the friction energy e = P 2 pi / (w A) per area, P its mean
     friction power and w the wheel's spin. It loses `Wear.of` (e) each time: depth per metre = depth / travel.
+    Transverse grooves bear no friction: e is that of the rubber between them.
 
     Parameters
     ----------
     places : (2, m) r, z of the rings, m. widths : (m,) on the outline, m. power : (m,) W; negative values count as 0.
-    spin : rad/s. travel : m per revolution. table : of the tread's card.
+    spin : rad/s. travel : m per revolution. table : of the tread's card. rubber : share of a ring that is no groove.
 
     >>> wear = RingWear(np.array([[0.3], [0.0]]), np.array([0.01]), np.array([10.0]), 100.0, 1.9,
     ...     Wear.check({"depth": "5 nm", "source": "estimate: example"}))
@@ -47,6 +48,7 @@ class RingWear(Brief):
     spin: float
     travel: float
     table: Wear
+    rubber: float = 1.0
 
     def _facts(self) -> Mapping[str, Any]:
         return {
@@ -57,13 +59,13 @@ class RingWear(Brief):
 
     @property
     def areas(self) -> Array:
-        """(m,) of the rings, m2."""
+        """(m,) of the rings, with transverse grooves, m2."""
         return np.asarray(2 * np.pi * self.places[0] * self.widths)
 
     @property
     def energy(self) -> Array:
-        """(m,) friction energy per area of one passing, J/m2."""
-        return np.asarray(np.maximum(self.power, 0.0) * 2 * np.pi / (self.spin * self.areas))
+        """(m,) friction energy per area of rubber of one passing, J/m2."""
+        return np.asarray(np.maximum(self.power, 0.0) * 2 * np.pi / (self.spin * self.rubber * self.areas))
 
     @functools.cached_property
     def depth_per_km(self) -> Array:
@@ -78,7 +80,7 @@ class RingWear(Brief):
     @property
     def volume_per_km(self) -> float:
         """Rubber worn off the whole tread per kilometre, m3."""
-        return float((self.depth_per_km * self.areas).sum())
+        return float(self.rubber * (self.depth_per_km * self.areas).sum())
 
 
 def tread_table(study: StudyData) -> Wear:
@@ -97,6 +99,12 @@ def tread_table(study: StudyData) -> Wear:
     return card.wear
 
 
+def rubber_share(study: StudyData) -> float:
+    """Share of a ring of the tread that is no transverse groove."""
+    section = study.section
+    return 1.0 if section.pattern is None or section.patterned != TREAD else section.pattern.rubber
+
+
 def ring_wear(rolled: RolledStudy) -> RingWear:
     """Wear of a rolling tyre by ring, at its undeformed places.
 
@@ -110,5 +118,6 @@ def ring_wear(rolled: RolledStudy) -> RingWear:
     r, z = tyre.body.rings.nodes[:, influence.tread.nodes[nodes]]
     side = np.where(influence.places[1] < 0, -1.0, 1.0) if tyre.half else np.ones(len(z))
     return RingWear(
-        np.stack([r, side * z]), influence.lengths, state.power_by_ring, state.spin, 2 * np.pi * state.travel, table
-    )
+        np.stack([r, side * z]), influence.lengths, state.power_by_ring, state.spin, 2 * np.pi * state.travel, table,
+        rubber_share(rolled.study),
+    )  # fmt: skip
