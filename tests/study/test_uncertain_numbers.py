@@ -3,20 +3,24 @@
 from __future__ import annotations
 
 import functools
+import math
 from typing import Any
 
 import numpy as np
 import pytest
 
 import tyrefem as tf
+from tyrefem.compare.study_check import check_study
+from tyrefem.diagnose.unknowns.unknown import Unknown, with_values
 from tyrefem.errors import InputError
-from tyrefem.inputs.changes import scaled
+from tyrefem.inputs.changes import check_factor, scaled
 from tyrefem.inputs.uncertain_numbers import UncertainNumber, left_out, stated_deviations, uncertain_number
 from tyrefem.materials.reads import STIFFNESS, tables_read
 from tyrefem.mechanics.cycle_schedule import cycle_schedule
 from tyrefem.mechanics.footprint.pressed_tyre import mechanical_mesh
 from tyrefem.mechanics.solid.tyre_body import tyre_body
 from tyrefem.mechanics.strain_laws import strain_laws
+from tyrefem.variants.varied import uncertain
 
 RADIAL, BIAS = "passenger-205-55r16", "nasa-22x5.5-8pr"
 SHIPPED = (RADIAL, "truck-295-80r22.5", "aircraft-radial", BIAS, "example-validation")
@@ -192,4 +196,51 @@ def test_a_share_of_a_temperature_is_refused(ambient: str) -> None:
     with pytest.raises(InputError, match="is a temperature"):
         tf.study(BIAS, {"drive.ambient": ambient}).scaled("drive.ambient", 1.1)
     with pytest.raises(InputError, match="is a temperature"):
-        scaled({"unit": ambient.split()[1], "values": [20.0, 30.0]}, 1.1)
+        check_factor({"unit": ambient.split()[1], "values": [20.0, 30.0]})
+    # Fits multiply kelvins.
+    first, last = scaled({"unit": "degF", "values": [77.0, 86.0]}, 1.01)["values"]
+    assert (first, last) == (pytest.approx(298.15 * 1.01 - 273.15), pytest.approx(303.15 * 1.01 - 273.15))
+
+
+@pytest.mark.parametrize("ambient", ["25 degC", "77 degF", "298.15 K"])
+def test_a_standard_deviation_may_be_a_quantity(ambient: str) -> None:
+    study = tf.study(BIAS, {"drive.ambient": ambient, "uncertainty": {"drive.ambient": "2 K", "drive.load": "100 N"}})
+    by_key = {number.key: number for number in study.uncertain_numbers}
+    assert by_key["drive.ambient"].sd == pytest.approx(2 / 298.15)
+    load = study.card.drive.phases[0].load.start
+    assert by_key["drive.load"].sd == pytest.approx(100 / load)
+    warmer = study.scaled("drive.ambient", 1 + by_key["drive.ambient"].sd)
+    assert warmer.card.drive.phases[0].ambient.start == pytest.approx(27.0)
+    assert check_study(study) == len(study.measured)
+    unknown = Unknown("drive.ambient", by_key["drive.ambient"].sd)
+    fitted = with_values(study, {unknown: math.log1p(unknown.sd)})
+    assert fitted.card.drive.phases[0].ambient.start == pytest.approx(27.0)
+    (varied,) = [number for number in uncertain(study, 1.0) if number.key == "drive.ambient"]
+    assert varied.of(varied.at(1.0)) == pytest.approx(300.15 / 298.15)
+
+
+@pytest.mark.parametrize(
+    ("key", "deviation", "words"),
+    [
+        ("drive.ambient", "2 kg", "is not a unit of this quantity"),
+        ("drive.load", "0 N", "is out of range"),
+        ("drive.load", "3 MN", "is out of range"),
+        ("drive.load", "120 %", "must be less than 1"),
+        ("materials.carcass.conductivity.table", "0.1 W/m/K", "is a table: its standard deviation is a share"),
+    ],
+)
+def test_another_quantity_is_refused(key: str, deviation: str, words: str) -> None:
+    table = [["20 degC", "0.2 W/m/K"], ["80 degC", "0.3 W/m/K"]]
+    conductivity = {"materials.carcass.conductivity": {"table": table, "source": "test"}}
+    with pytest.raises(InputError, match=words) as error:
+        _ = tf.study(BIAS, {**conductivity, "uncertainty": {key: deviation}}).uncertain_numbers
+    assert error.value.field == f"uncertainty.{key}"
+
+
+def test_a_comparison_has_the_ambient_s_deviation() -> None:
+    study = tf.study(BIAS, {"mesh.size": "8 mm", "drive.duration": "60 s", "uncertainty": {"drive.ambient": "2 K"}})
+    result = study.run()
+    comparison = study.compare(result.readings, result=result)
+    rows = comparison.inputs[comparison.inputs["key"] == "drive.ambient"]
+    assert rows["relative_sd"].iloc[0] == pytest.approx(2 / (study.card.drive.phases[0].ambient.start + 273.15))
+    assert 0 < rows["change_K"].max() <= 2.0

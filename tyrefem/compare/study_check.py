@@ -17,10 +17,10 @@ def check_study(study: StudyData) -> int:
         or column.
     """
     check_cases(study)
-    _ = study.uncertainty
-    for key, sd in study.card.uncertainty.items():
+    numbers = study.uncertain_numbers
+    for key in study.card.uncertainty:
         try:
-            study.scaled(key, 1 + sd)
+            study.scaled(key, 1 + next(number.sd for number in numbers if key in number.keys))
         except InputError as error:
             raise InputError(
                 f"one standard deviation more: {error}", field=f"uncertainty.{key}", file=study.file

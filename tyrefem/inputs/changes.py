@@ -9,15 +9,14 @@ from typing import Any
 from tyrefem import library
 from tyrefem.cards.entries import entry_number
 from tyrefem.errors import InputError, nearest
+from tyrefem.inputs.deviations import ZERO, has_arbitrary_zero
 from tyrefem.inputs.drive_table import EXCLUSIVE_KEYS
-from tyrefem.quantity import written
+from tyrefem.quantity import parse, written
 from tyrefem.sizes import completed_materials, is_size, with_numbers
 
 #: Tables whose text value names a card: a change of a value below it overrides the card's value.
 _REFERENCES = {"section": "section", "materials.*": "material"}
 _AMOUNT = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)(.*)$", re.DOTALL)
-#: Units of temperatures whose zero is arbitrary.
-_SCALES = re.compile(r"\s*(deg[CF]|degree_(Celsius|Fahrenheit)|celsius|fahrenheit|°\s?[CF])\s*")
 
 
 def changed(data: Mapping[str, Any], key: str, value: Any) -> dict[str, Any]:
@@ -189,9 +188,11 @@ def scaled(value: Any, factor: float, significant: int | None = None) -> Any:
 
     The first column of a table's rows is not changed: temperatures, frequencies, places.
 
+    A temperature in degC or degF is multiplied in kelvins.
+
     Raises
     ------
-    InputError : no number; a temperature in degC or degF, of which a factor is another change on each scale.
+    InputError : no number.
 
     >>> scaled("20 mph", 1.5), scaled("20 mph", 1.23456, significant=3), scaled(0.1, 1.23456, significant=3)
     ('30 mph', '24.7 mph', 0.123)
@@ -199,14 +200,17 @@ def scaled(value: Any, factor: float, significant: int | None = None) -> Any:
     {'unit': 'mm', 'values': [1.5, 3.0]}
     >>> scaled([["20 degC", "0.2 W/m/K"], ["80 degC", "0.3 W/m/K"]], 2.0)
     [['20 degC', '0.4 W/m/K'], ['80 degC', '0.6 W/m/K']]
+    >>> scaled("25 degC", 1.01)
+    '27.9815 degC'
     """
     if isinstance(value, bool):
         raise InputError(f"{value!r} is not a number that can be scaled")
     if isinstance(value, int | float):
         return value * factor if significant is None else float(f"{value * factor:.{significant}g}")
     if isinstance(value, Mapping) and set(value) == {"unit", "values"}:
-        if _SCALES.fullmatch(str(value["unit"])):
-            raise _no_factor(f"{value['values']} {value['unit']}")
+        if has_arbitrary_zero(str(value["unit"])):
+            texts = [scaled(f"{entry!r} {value['unit']}", factor, significant) for entry in value["values"]]
+            return {"unit": "degC", "values": [float(text.split()[0]) for text in texts]}
         return {"unit": value["unit"], "values": [scaled(entry, factor, significant) for entry in value["values"]]}
     if isinstance(value, list):
         if value and all(isinstance(row, list) and row for row in value):
@@ -215,10 +219,17 @@ def scaled(value: Any, factor: float, significant: int | None = None) -> Any:
     match = _AMOUNT.match(value) if isinstance(value, str) else None
     if match is None:
         raise InputError(f"{value!r} is not a number that can be scaled")
-    if _SCALES.fullmatch(match[2]):
-        raise _no_factor(repr(value))
+    if has_arbitrary_zero(match[2]):
+        return f"{(parse(value, 'degC') + ZERO) * factor - ZERO:.{significant or 12}g} degC"
     return f"{float(match[1]) * factor:.{significant or 12}g}{match[2]}"
 
 
-def _no_factor(value: str) -> InputError:
-    return InputError(f"{value} is a temperature: a factor of it means nothing; write it in K, or give values")
+def check_factor(value: Any) -> None:
+    """Raises InputError for a temperature in degC or degF: a factor of it is another change on each scale."""
+    if isinstance(value, Mapping) and "unit" in value:
+        unit, shown = str(value["unit"]), f"{value.get('values')} {value['unit']}"
+    else:
+        match = _AMOUNT.match(value) if isinstance(value, str) else None
+        unit, shown = "" if match is None else match[2], repr(value)
+    if has_arbitrary_zero(unit):
+        raise InputError(f"{shown} is a temperature: a share of it means nothing; give values, or an sd like '2 K'")

@@ -17,6 +17,7 @@ from tyrefem.cards import Card, Temperature, Text
 from tyrefem.effects import Effect, EffectOf
 from tyrefem.errors import InputError, InputWarning, nearest
 from tyrefem.estimates.work import check_readings, smallest_tolerance
+from tyrefem.inputs.deviations import Deviation
 from tyrefem.inputs.drive import Drive
 from tyrefem.inputs.explore_choice import ExploreChoice
 from tyrefem.inputs.loading import TR_R_64, FootprintLaw, TrR64, VerticalStiffness
@@ -283,7 +284,7 @@ class StudyCard(Card):
     sensors: dict[str, Sensor] = Field(default_factory=dict)
     output: Output = Output()
     numerics: Numerics = Numerics()
-    uncertainty: dict[str, Annotated[float, Unit("1", gt=0, lt=1)]] = Field(default_factory=dict)
+    uncertainty: dict[str, Annotated[float | str, Deviation()]] = Field(default_factory=dict)
     measured: tuple[MeasuredEntry, ...] = ()
     cases: Text | None = None
     effects: tuple[Annotated[Effect, EffectOf()], ...] = ()

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from tyrefem.cards import Card
 from tyrefem.errors import InputError
-from tyrefem.inputs.changes import scaled, value_at
+from tyrefem.inputs.changes import check_factor, scaled, value_at
+from tyrefem.inputs.deviations import share_of
 from tyrefem.materials.reads import STIFFNESS, tables_read
 
 if TYPE_CHECKING:
@@ -49,6 +50,8 @@ class UncertainNumber:
         >>> UncertainNumber("drive.load", ("drive.load",), ("2 kN",), 0.05).changes(1.5)
         {'drive.load': '3 kN'}
         """
+        for value in self.written:
+            check_factor(value)
         return {key: scaled(value, factor, significant) for key, value in zip(self.keys, self.written, strict=True)}
 
     @property
@@ -98,9 +101,9 @@ def uncertain_numbers(study: StudyOfCards) -> tuple[UncertainNumber, ...]:
     numbers = sorted(_of_cards(study), key=lambda number: _table(number.key) in STIFFNESS)
     places = {key: place for place, number in enumerate(numbers) for key in number.keys}
     stated: dict[int, str] = {}
-    for key, sd in study.card.uncertainty.items():
+    for key, deviation in study.card.uncertainty.items():
         try:
-            number = _named(study, key, sd)
+            number = _stated(_named(study, key, 0.0), deviation)
             number.changes(1.0)
         except InputError as error:
             raise InputError(error.message, field=f"uncertainty.{key}", file=study.file) from None
@@ -109,15 +112,23 @@ def uncertain_numbers(study: StudyOfCards) -> tuple[UncertainNumber, ...]:
             place = len(numbers)
             numbers.append(number)
             places |= dict.fromkeys(number.keys, place)
-        elif place in stated and numbers[place].sd != sd:
+        elif place in stated and numbers[place].sd != number.sd:
             message = (
                 f"is the same number as '{stated[place]}': both regions use the card '{number.card}'; state only one"
             )
             raise InputError(message, field=f"uncertainty.{key}", file=study.file)
         else:
-            numbers[place] = replace(numbers[place], sd=sd)
+            numbers[place] = replace(numbers[place], sd=number.sd)
         stated.setdefault(place, key)
     return tuple(numbers)
+
+
+def _stated(number: UncertainNumber, deviation: float | str) -> UncertainNumber:
+    """A number with a deviation as stated, of which the number may be a temperature, in K then."""
+    shares = [share_of(value, deviation) for value in number.written]
+    if len({share for share, _ in shares}) > 1:
+        raise InputError("has several values: its standard deviation is a share, for example '2 %'")
+    return replace(number, sd=shares[0][0], written=tuple(written for _, written in shares))
 
 
 def uncertain_number(study: StudyOfCards, key: str, sd: float = 0.0) -> UncertainNumber:

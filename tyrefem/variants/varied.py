@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tyrefem.errors import InputError
-from tyrefem.inputs.changes import scaled, value_at
+from tyrefem.inputs.changes import check_factor, scaled, value_at
 from tyrefem.inputs.name_patterns import number_at
 from tyrefem.quantity import parse
 from tyrefem.variants.card import VaryCard
@@ -216,6 +216,7 @@ def factored(study: StudyData, group: Members) -> Varied:
     values = [number_at(study.data, key, study.folder) for key in group.keys]
     for key, value in zip(group.keys, values, strict=True):
         scaled(value, 1.0)
+        check_factor(value)
         if not _first(value):
             raise InputError(f"is {value!r}: a factor does not change it; give values", field=key)
     others = tuple(zip(group.keys[1:], values[1:], strict=True))
@@ -327,7 +328,10 @@ def factor_of(value: Any) -> float | None:
 
 
 def _times(value: Any, share: float) -> Any:
-    return value if share == 1.0 else scaled(value, share, DIGITS)
+    if share == 1.0:
+        return value
+    check_factor(value)
+    return scaled(value, share, DIGITS)
 
 
 def _alike(value: Any, other: Any) -> bool:
@@ -343,4 +347,6 @@ def _alike(value: Any, other: Any) -> bool:
 
 def scaled_value(study: StudyData, key: str, factor: float, digits: int = DIGITS) -> Any:
     """The study's value at a dotted name times a factor, as in a study file."""
-    return scaled(value_at(study.data, key, study.folder), factor, digits)
+    value = value_at(study.data, key, study.folder)
+    check_factor(value)
+    return scaled(value, factor, digits)
