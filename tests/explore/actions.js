@@ -19,6 +19,10 @@ field.value = "31.5";
 field.dispatchEvent(new Event("change"));
 await settle();
 out.outside = { number: E.state.numbers[0], badge: text("badge"), kind: $("badge").className, note: text("note-0"), row: slider.closest(".slider").className, spoken: slider.getAttribute("aria-valuetext"), error: document.querySelector(".tile .error").textContent };
+/* A typed temperature below zero, in a box above zero; a length or speed has no such value. */
+const typed = async (i, value) => { const each = $(`slider-${i}`).closest(".slider").querySelector("input[type=number]"); each.value = value; each.dispatchEvent(new Event("change")); await settle(); return E.state.numbers[i]; };
+const ambient = E.data.numbers.findIndex((number) => number.key === "drive.ambient");
+out.frost = [await typed(ambient, "-5"), await typed(ambient, "0"), await typed(0, "-5")];
 /* Copied texts, at a setting where every number has moved. */
 E.data.numbers.forEach((number, i) => E.setNumber(i, number.low + 0.3 * (number.high - number.low)));
 await settle();

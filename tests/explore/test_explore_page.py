@@ -114,6 +114,12 @@ def test_a_broken_limit_turns_red(acted: Any) -> None:
 
 
 @pytest.mark.usefixtures("needs_chromium")
+def test_a_temperature_below_zero_can_be_typed(acted: Any) -> None:
+    """A speed below zero, after 31.5 mph, cannot."""
+    assert acted["frost"] == [-5.0, 0.0, 31.5]
+
+
+@pytest.mark.usefixtures("needs_chromium")
 def test_a_setting_outside_the_box_is_marked(acted: Any) -> None:
     outside = acted["outside"]
     assert outside["number"] == 31.5

@@ -124,9 +124,11 @@ function makeSliders() {
       setNumber(i, Math.min(Math.max(value, low), high));
     });
     range.addEventListener("input", () => setNumber(i, Number(range.value)));
+    /* Only temperatures may be below zero where the box is above it. */
+    const positive = number.low > 0 && !number.symbol.startsWith("°");
     field.addEventListener("change", () => {
       const value = Number(field.value);
-      if (field.value.trim() === "" || !Number.isFinite(value) || (number.low > 0 && value <= 0)) showNumber(i);
+      if (field.value.trim() === "" || !Number.isFinite(value) || (positive && value <= 0)) showNumber(i);
       else setNumber(i, value);
     });
     row.addEventListener("dblclick", (event) => { if (event.target !== field) setNumber(i, number.start); });
