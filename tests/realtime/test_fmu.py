@@ -56,6 +56,13 @@ def test_a_public_checker_finds_nothing(unit):
     assert description.coSimulation.canGetAndSetFMUstate
 
 
+def test_variables_have_names_of_their_own(exported):
+    tyre = RealTimeTyre(exported.file)
+    tyre.names = ["speed", "a-b", "a_b", "a b", "time", "outside", "hottest"]
+    names = variable_names(tyre)
+    assert names == ["speed_2", "a_b", "a_b_2", "a_b_3", "time_2", "outside_2", "hottest"]
+
+
 def test_it_gives_the_numbers_of_the_python_model(unit, exported):
     """Simulated by fmpy, inputs held for 20 s each."""
     tyre = RealTimeTyre(exported.file)

@@ -14,6 +14,7 @@ import sys
 import tempfile
 import zipfile
 from datetime import UTC, datetime
+from itertools import chain, count
 from pathlib import Path
 from typing import Any
 from xml.sax.saxutils import quoteattr
@@ -48,8 +49,17 @@ _UNITS = {
 
 
 def variable_names(tyre: RealTimeTyre) -> list[str]:
-    """Names of the outputs in the FMU, in the order of `tyre.names`; hyphens and spaces become underscores."""
-    return [name.replace("-", "_").replace(" ", "_") for name in tyre.names]
+    """Names of the outputs in the FMU, in the order of `tyre.names`; hyphens and spaces become underscores.
+
+    A name that another variable has gets a number: an importing tool finds variables by their names.
+    """
+    taken, names = {*INPUTS, "time", "initial_temperature", "clamp", "outside"}, []
+    for output in tyre.names:
+        plain = output.replace("-", "_").replace(" ", "_")
+        name = next(each for each in chain([plain], (f"{plain}_{k}" for k in count(2))) if each not in taken)
+        taken.add(name)
+        names.append(name)
+    return names
 
 
 def description(tyre: RealTimeTyre, guid: str) -> str:
