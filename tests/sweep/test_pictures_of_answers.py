@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import itertools
 import subprocess
 import sys
 from types import SimpleNamespace
 
+import numpy as np
 import pandas as pd
+from matplotlib.text import Text
 
 import tyrefem as tf
 from tyrefem.reports.sweep_answer_figures import indices, tornado
-from tyrefem.reports.sweep_figures import curves
+from tyrefem.reports.sweep_figures import curves, pareto
 from tyrefem.sweep.sweep import sweep
 from tyrefem.variants.plan import plan_of
 
@@ -28,6 +31,21 @@ def test_a_tornado_names_its_numbers_whole_and_on_the_paper() -> None:
         assert label.get_text().startswith(LONG)
         made.draw_without_rendering()
         assert label.get_window_extent(made.canvas.get_renderer()).x0 > 0
+
+
+def test_names_on_a_crowded_pareto_front_do_not_cover_each_other() -> None:
+    steps = np.arange(12)
+    table = pd.DataFrame({"variant": [str(200 + k) for k in steps], "x": 0.006 + 1e-5 * steps, "y": 45.0 - 0.3 * steps})
+    far = pd.DataFrame({"variant": ["1"], "x": [0.013], "y": [80.0]})
+    rows = pd.concat([table, far], ignore_index=True).assign(feasible=True, failure="")
+    plan = SimpleNamespace(limits={})
+    made = pareto(SimpleNamespace(table=rows, overview=lambda _: rows, plan=plan), table, "x", "y")  # type: ignore[arg-type]
+    made.draw_without_rendering()
+    written = [text for text in made.axes[0].texts if text.get_text() in set(table["variant"])]
+    assert len(written) == len(table)
+    # The text alone, without the line that leads to its point.
+    boxes = [Text.get_window_extent(text, made.canvas.get_renderer()) for text in written]
+    assert [(a, b) for a, b in itertools.combinations(boxes, 2) if a.padded(-1).overlaps(b.padded(-1))] == []
 
 
 def test_what_a_curve_stands_for_has_its_unit() -> None:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tyrefem.reports.figures.near_points import name_points
 from tyrefem.reports.figures.style import (  # fmt: skip
     ENERGY_MAP,
     FONT,
@@ -38,6 +39,8 @@ BROKEN = "#D55E00"
 MOST_LINES = 8
 #: More variants than this are drawn as hexagons, so that a picture stays small; number of hexagons along an axis.
 MOST_POINTS, HEXAGONS = 3000, 40
+#: Longest Pareto front whose variants are named.
+MOST_NAMES = 12
 #: Largest numbers of maps and of curves of an answer.
 MOST_MAPS, MOST_CURVES = 3, 4
 
@@ -274,17 +277,15 @@ def pareto(sweep: Sweep, best: pd.DataFrame, x: str, y: str) -> Figure:
     # A temperature that was never reached has no time.
     ordered = best.dropna(subset=[x, y]).sort_values(x)
     axes.plot(ordered[x], ordered[y], "o", ms=5.5, color=PALETTE[1], label="Pareto front")
-    if len(ordered) <= 12:
-        for number, (name, a, b) in enumerate(zip(ordered["variant"], ordered[x], ordered[y], strict=True)):
-            axes.annotate(
-                plain(str(name)), (a, b), xytext=(5, 5 if number % 2 else -10), textcoords="offset points",
-                fontsize=FONT - 1.5, color=PALETTE[1],
-            )  # fmt: skip
     _limits(axes, sweep, y)
     axes.set_xlabel(label(x), fontsize=FONT)
     axes.set_ylabel(label(y), fontsize=FONT)
     axes.legend(fontsize=FONT - 1, frameon=False)
     tidy(axes)
+    if len(ordered) <= MOST_NAMES:
+        names = [plain(str(name)) for name in ordered["variant"]]
+        points, others = (each[[x, y]].to_numpy(dtype=float) for each in (ordered, table.dropna(subset=[x, y])))
+        name_points(axes, points, names, others, fontsize=FONT - 1.5, color=PALETTE[1])
     title(
         drawn,
         f"{name_of(y).capitalize()} against {name_of(x)}",
