@@ -21,8 +21,8 @@ from tyrefem.inputs.changes import value_at
 
 #: Settings at which page and Python are compared, and the largest difference that is allowed, K (and Pa, N, W).
 SETTINGS, SAME = 20, 1e-6
-#: Widths of a phone, CSS pixels.
-PHONE = 390
+#: Widths of a phone and of a small one, CSS pixels.
+PHONE, SMALL_PHONE = 390, 320
 
 
 def script(name: str) -> str:
@@ -220,6 +220,12 @@ def test_a_phone_and_the_dark(page: str) -> None:
         name, *contrasts = shown[theme]
         assert name == theme
         assert min(contrasts) > 4.5
+
+
+@pytest.mark.usefixtures("needs_chromium")
+def test_nothing_stands_out_of_a_small_phone(page: str) -> None:
+    shown = result_in_browser(within_frame(page, SMALL_PHONE, 568), script("phone"))
+    assert shown["scroll"] <= shown["client"] == SMALL_PHONE
 
 
 class _Sources(HTMLParser):
