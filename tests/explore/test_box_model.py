@@ -41,6 +41,17 @@ def test_fresh_full_runs_agree_within_the_certificate(explored: Exploration) -> 
     assert explored.certificate.worst <= explored.certificate.tolerance
 
 
+def test_the_error_of_the_coefficient_is_that_of_the_whole_drive(explored: Exploration) -> None:
+    """As that of the force: the page shows both over time."""
+    place = np.full(len(explored.plan.varied), 0.9)
+    full = perform_history(SettingTask(explored.plan.packed, changes_at(explored.plan.varied, place)))
+    assert isinstance(full, FullHistory)
+    errors = differences(explored.solve(explored.numbers(place)), full)
+    assert errors["rolling_resistance"] > 1.01 * errors["rolling_resistance_N"]
+    ratio = errors["rolling_resistance"] / errors["rolling_resistance_coefficient"]
+    assert ratio == pytest.approx(full.answers["load_N"], rel=0.01)
+
+
 def test_the_arrays_are_those_of_the_real_time_export(explored: Exploration, tmp_path: Path) -> None:
     """`RealTimeTyre` marches the arrays of the box's middle, in steps of its own, to the same temperatures."""
     number = np.array([n.number(0.5) for n in explored.plan.varied])

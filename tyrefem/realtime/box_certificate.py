@@ -86,6 +86,9 @@ def differences(solution: Solution, full: FullHistory) -> dict[str, float]:
         errors[name] = float(off[first:].max(initial=0.0))
     # Highest values of a rim and of the contained air are no answers of a full run, but in its readings.
     answers = {f"{name}_max_degC": float(series.max()) for name, series in full.series.items()} | dict(full.answers)
+    # The rolling resistance coefficient is an output and an answer.
     return errors | {
-        name: abs(value - float(answers[name])) for name, value in solution.answers.items() if name in answers
+        name: max(abs(value - float(answers[name])), errors.get(name, 0.0))
+        for name, value in solution.answers.items()
+        if name in answers
     }

@@ -118,7 +118,7 @@ def series_of(result: ResultData) -> dict[str, Array]:
 
 
 def powers(result: ResultData) -> dict[str, Array]:
-    """Heat by region, by way out and stored, W, and rolling resistance, N; at a jump what was before it."""
+    """Heat by region, by way out and stored, W, rolling resistance, N and 1; at a jump what was before it."""
     tyre, budget = result.tyre, result.heat_budget
     regions = {zone.title: str(zone.region) for zone in tyre.schedule.zones}
     series: dict[str, Array] = {}
@@ -129,5 +129,9 @@ def powers(result: ResultData) -> dict[str, Array]:
     made = np.asarray(budget.power("generated"))
     left = np.asarray(budget.power("lost")) + np.asarray(budget.power("stored"))
     series |= {"generated": made, "lost and stored": left}
-    series["rolling_resistance"] = np.divide(made, speed, out=np.zeros_like(made), where=speed >= STANDSTILL)
-    return series
+    force = np.divide(made, speed, out=np.zeros_like(made), where=speed >= STANDSTILL)
+    load = np.array(
+        [tyre.schedule.mean(lambda case: case.load, just_before(result.times, i)) for i in range(len(speed))]
+    )
+    coefficient = np.divide(force, load, out=np.zeros_like(force), where=load > 0)
+    return series | {"rolling_resistance": force, "rolling_resistance_coefficient": coefficient}
