@@ -23,6 +23,11 @@ out.outside = { number: E.state.numbers[0], badge: text("badge"), kind: $("badge
 const typed = async (i, value) => { const each = $(`slider-${i}`).closest(".slider").querySelector("input[type=number]"); each.value = value; each.dispatchEvent(new Event("change")); await settle(); return E.state.numbers[i]; };
 const ambient = E.data.numbers.findIndex((number) => number.key === "drive.ambient");
 out.frost = [await typed(ambient, "-5"), await typed(ambient, "0"), await typed(0, "-5")];
+/* A setting without a solution: what still stands there is of another setting. */
+await typed(0, "1e9");
+out.unsolved = { badge: text("badge"), faded: Number(getComputedStyle(document.querySelector(".numbers")).opacity), sliders: Number(getComputedStyle(document.querySelector(".sliders")).opacity) };
+await typed(0, "31.5");
+out.solved = Number(getComputedStyle(document.querySelector(".numbers")).opacity);
 /* Copied texts, at a setting where every number has moved. */
 E.data.numbers.forEach((number, i) => E.setNumber(i, number.low + 0.3 * (number.high - number.low)));
 await settle();

@@ -120,6 +120,13 @@ def test_a_temperature_below_zero_can_be_typed(acted: Any) -> None:
 
 
 @pytest.mark.usefixtures("needs_chromium")
+def test_numbers_of_another_setting_fade(acted: Any) -> None:
+    assert acted["unsolved"]["badge"].startswith("No solution at this setting")
+    assert acted["unsolved"]["faded"] < 0.5
+    assert acted["unsolved"]["sliders"] == acted["solved"] == 1.0
+
+
+@pytest.mark.usefixtures("needs_chromium")
 def test_a_setting_outside_the_box_is_marked(acted: Any) -> None:
     outside = acted["outside"]
     assert outside["number"] == 31.5

@@ -174,8 +174,10 @@ function update() {
   } catch (error) {
     $("badge").textContent = `No solution at this setting: ${error.message}`;
     $("badge").className = "badge outside";
+    document.querySelector("main").classList.add("unsolved");
     return;
   }
+  document.querySelector("main").classList.remove("unsolved");
   showBadge();
   drawTime();
   if (!restDue) restDue = setTimeout(drawRest, 0);
