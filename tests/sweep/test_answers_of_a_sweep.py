@@ -537,7 +537,13 @@ def test_a_sensor_named_as_a_region_has_an_answer_of_its_own(tyre: Study) -> Non
         assert table["tread_sensor_max_degC"].tolist() == table["other_max_degC"].tolist()
 
 
-@pytest.mark.parametrize("name", ["hottest", "tread_max"])
+@pytest.mark.parametrize("name", ["hottest", "gas_pressure", "rim", "rolling_resistance"])
+def test_a_sensor_has_no_name_of_another_output(name: str, tyre: Study) -> None:
+    with pytest.raises(InputError, match=f"'{name}' is a name that readings already use"):
+        tyre.replace({f"sensors.{name}": SENSOR})
+
+
+@pytest.mark.parametrize("name", ["sidewall_max", "tread_max"])
 def test_a_sensor_whose_answer_has_the_name_of_another_is_refused(name: str, tmp_path: Path) -> None:
     (tmp_path / "cases.csv").write_text("name,drive.speed [mph]\na,10\n")
     named = study("nasa-22x5.5-8pr", {f"sensors.{name}": SENSOR, "cases": str(tmp_path / "cases.csv")})

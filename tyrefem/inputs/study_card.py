@@ -30,6 +30,11 @@ if TYPE_CHECKING:
     from tyrefem.geometry import Section
 
 Rows = tuple[tuple[float, float], ...]
+#: Names that tables, exported models and pages use beside those of the sensors.
+OUTPUTS = (
+    *("time_s", "contained-air", "rim", "hottest", "gas_pressure", "generated", "stored"),
+    *("rolling_resistance", "rolling_resistance_coefficient"),
+)
 
 
 def _rows(value: Any) -> Rows:
@@ -313,7 +318,7 @@ class StudyCard(Card):
     @model_validator(mode="after")
     def _sensor_names(self) -> StudyCard:
         for name in self.sensors:
-            if name in ("time_s", "contained-air", "rim") or not name.strip():
+            if name in OUTPUTS or not name.strip():
                 raise InputError(f"'{name}' is a name that readings already use", field="sensors")
         return self
 
