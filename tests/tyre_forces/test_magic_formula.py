@@ -117,6 +117,27 @@ def test_one_load_and_one_sign_tell_fewer_coefficients():
     assert max(fit.errors.values()) < 0.03
 
 
+def test_few_slips_tell_no_curvature_and_do_not_bend_between_the_points():
+    """With as many coefficients as points the curve went through all of them, and elsewhere."""
+    plain = MagicFormula({k: v for k, v in KNOWN.items() if k not in ("PHY1", "PVY1", "QHZ1")}, 4000.0, 2.2e5, 0.31)
+    load, angle = (part.ravel() for part in np.meshgrid([3000.0, 5000.0], np.radians([0.0, 1.0, 4.0, 8.0])))
+    load, angle = np.append(load, [3000.0, 5000.0] * 3), np.append(angle, np.repeat(np.radians([0.0, 4.0, -4.0]), 2))
+    camber = np.where(np.arange(len(load)) < 8, 0.0, np.radians(3.0))
+    columns = {"load": load, "slip_angle": angle, "camber": camber}
+    columns["lateral"] = plain.lateral_force(load, angle, camber)
+    columns["aligning"] = plain.aligning_moment(load, angle, camber)
+    fit = fit_magic_formula(ForcePoints.of(columns), 0.31, symmetric=True)
+    assert {"PKY1", "PKY2", "PDY1", "PDY2", "PCY1", "PKY6", "QBZ1", "QDZ2"} <= set(fit.fitted)
+    assert not {"PEY1", "PEY2", "QEZ1", "QEZ2", "PDY3", "QBZ5"} & set(fit.fitted)
+    between = np.radians([0.5, 2.0, 6.0])
+    largest = np.abs(fit.points.aligning).max()
+    for each in (3000.0, 5000.0):
+        moment = fit.formula.aligning_moment(each, between) - plain.aligning_moment(each, between)
+        assert np.abs(moment).max() < 0.1 * largest
+        stiffness = fit.formula.cornering_stiffness(each)
+        assert stiffness == pytest.approx(plain.cornering_stiffness(each), rel=0.05)
+
+
 def test_a_symmetric_tyre_has_no_ply_steer():
     plain = MagicFormula({k: v for k, v in KNOWN.items() if k not in ("PHY1", "PVY1", "QHZ1")}, 4000.0, 2.2e5, 0.31)
     points = curves()

@@ -40,7 +40,15 @@ ALIGNING_CAMBER = {1: "QBZ5 QDZ3 QDZ8 QHZ3", 2: "QDZ9 QHZ4"}
 #: Coefficients of the pressure, where several pressures are given.
 LONGITUDINAL_PRESSURE, LATERAL_PRESSURE, ALIGNING_PRESSURE = "PPX1 PPX3", "PPY1 PPY2 PPY3", "PPZ1"
 #: Coefficients that must not be zero, fitted or not; the stiffness, whose first value the points give.
-NEEDED = {"longitudinal": (), "lateral": ("PKY2", "PKY4"), "aligning": ("QBZ10",)}
+NEEDED = {
+    "longitudinal": ("PCX1", "PDX1"),
+    "lateral": ("PCY1", "PDY1", "PKY2", "PKY4"),
+    "aligning": ("QBZ1", "QCZ1", "QDZ1", "QBZ10"),
+}
+#: Different slips, both signs alike, that a kind of coefficient needs: slope, peak, shape, curvature. By camber, those of
+#: the cambered points.
+SLIPS = {"PD": 2, "QB": 2, "PC": 3, "QC": 3, "PE": 4, "QE": 4}
+CAMBERED_SLIPS = {"PKY3": 1, "QDZ3": 1, "PDY3": 3, "QBZ5": 3}
 SLOPE = {"longitudinal": "PKX1", "lateral": "PKY1"}
 #: Fewest points of a fit.
 FEWEST = 4
@@ -93,7 +101,8 @@ def fit_magic_formula(
     """The Magic Formula 6.1 that fits points of pure slip best, in the least squares of force over load.
 
     F_x is fitted to the points that roll straight ahead; F_y, then M_z, to those of zero slip. Coefficients that the
-    points cannot tell (one load, no camber, one sign of slip) stay zero: `MagicFormulaFit.fitted` names the others.
+    points cannot tell (one load, no camber, one sign of slip, few slips) stay zero, or first values:
+    `MagicFormulaFit.fitted` names the others.
 
     Parameters
     ----------
@@ -184,13 +193,27 @@ def _count(values: Array) -> int:
 
 def _stages(points: ForcePoints, always: Any, odd: Any, camber: Any, pressure: str) -> list[list[str]]:
     """Names of the coefficients that the points can tell, in the order in which they become free."""
-    loads, stages = _count(points.load), []
+    loads = _count(points.load)
     slip = points.slip + points.slip_angle
+    level = np.abs(points.camber) <= ZERO
+    slips, cambered = _slips(slip[level] if level.any() else slip), _slips(slip[~level])
+
+    def told(names: str, needs: Mapping[str, int], known: int) -> list[str]:
+        return [name for name in names.split() if known >= needs.get(name, needs.get(name[:2], 0))]
+
     tables = [always, *([odd] if slip.min() < -ZERO and slip.max() > ZERO else [])]
-    tables += [camber] if _count(points.camber) > 1 else []
-    for table in tables:
-        stages += [those.split() for least, those in table.items() if loads >= least]
-    return stages + ([pressure.split()] if _count(points.pressure) > 1 else [])
+    stages = [told(those, SLIPS, slips) for table in tables for least, those in table.items() if loads >= least]
+    if _count(points.camber) > 1:
+        stages += [told(those, CAMBERED_SLIPS, cambered) for least, those in camber.items() if loads >= least]
+    if _count(points.pressure) > 1:
+        stages.append(pressure.split())
+    return [stage for stage in stages if stage]
+
+
+def _slips(slip: Array) -> int:
+    """Number of different slips that are not zero, both signs alike."""
+    moved = np.abs(slip)[np.abs(slip) > ZERO]
+    return _count(moved) if moved.size else 0
 
 
 def _steepness(points: ForcePoints, name: str) -> float:
