@@ -45,8 +45,8 @@ NEEDED = {
     "lateral": ("PCY1", "PDY1", "PKY2", "PKY4"),
     "aligning": ("QBZ1", "QCZ1", "QDZ1", "QBZ10"),
 }
-#: Different slips, both signs alike, that a kind of coefficient needs: slope, peak, shape, curvature; for effects of the
-#: camber, those of the cambered points.
+#: Different slips, both signs alike, that a kind of coefficient needs: slope, peak, shape, curvature. Those of the
+#: camber need slips of cambered points.
 SLIPS = {"PD": 2, "QB": 2, "PC": 3, "QC": 3, "PE": 4, "QE": 4}
 CAMBERED_SLIPS = {"PKY3": 1, "QDZ3": 1, "PDY3": 3, "QBZ5": 3}
 SLOPE = {"longitudinal": "PKX1", "lateral": "PKY1"}
