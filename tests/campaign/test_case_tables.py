@@ -31,6 +31,15 @@ def test_as_spreadsheets_write_it(tmp_path: Path, encoding: str, ending: str) ->
     assert read(tmp_path, text.encode(encoding)) == {"a": {"drive.speed": "20 mph"}}
 
 
+@pytest.mark.parametrize("delimiter", [";", "\t"])
+def test_semicolons_and_decimal_commas(tmp_path: Path, delimiter: str) -> None:
+    text = "name|drive.speed [mph]|note|section\nslow|12,5|a, b|mine\nfast|35||\n".replace("|", delimiter)
+    assert read(tmp_path, text) == {
+        "slow": {"drive.speed": "12.5 mph", "section": "mine"},
+        "fast": {"drive.speed": "35 mph"},
+    }
+
+
 @pytest.mark.parametrize(
     ("text", "words"),
     [

@@ -13,6 +13,7 @@ from tyrefem.measured.columns import is_time, parts
 from tyrefem.measured.lines import DELIMITERS, LONGEST_PREAMBLE, decode
 
 _HEADING = re.compile(r"^\s*([^\[\]]+?)\s*(?:\[([^\[\]]*)\])?\s*$")
+_DECIMAL_COMMA = re.compile(r"^(\s*[-+]?\d+),(\d+(?:[eE][-+]?\d+)?\s*)$")
 #: Columns for people, not values of the study.
 LABELS = ("name", "note")
 
@@ -32,6 +33,7 @@ def read_cases(path: Path) -> tuple[Case, ...]:
 
     The heading names each column: ``name``, optionally ``note``, and dotted names such as ``drive.load [lbf]``, whose
     unit is added to every number. Lines that begin with ``#`` are comments; an empty cell keeps the study's value.
+    Cells are separated by commas, semicolons or tabs; without commas between them a number may have a decimal comma.
 
     Raises
     ------
@@ -46,7 +48,8 @@ def read_cases(path: Path) -> tuple[Case, ...]:
     lines = _content(path)
     if len(lines) < 2:
         raise InputError("needs a heading and at least one case", file=path)
-    rows = [(number, _cells(line, number, path)) for number, line in lines]
+    delimiter = _delimiter(lines[0][1])
+    rows = [(number, _cells(line, number, path, delimiter)) for number, line in lines]
     columns = [_heading(cell, path) for cell in rows[0][1]]
     names = [name for name, _ in columns]
     if "name" not in names:
@@ -69,7 +72,7 @@ def looks_like_cases(path: Path) -> bool:
     A logger's file may begin with lines such as "name,Lab 3"; its heading, with a time and units, follows.
     """
     lines = [line for _, line in _content(path)[:LONGEST_PREAMBLE]]
-    cells = [cell.strip(' "') for cell in lines[0].split(",")] if lines else []
+    cells = [cell.strip(' "') for cell in lines[0].split(_delimiter(lines[0]))] if lines else []
     return "name" in cells and not any(_is_of_histories(line) for line in lines)
 
 
@@ -85,9 +88,16 @@ def _content(path: Path) -> list[tuple[int, str]]:
     return [(number, line) for number, line in lines if line.strip() and not line.lstrip().startswith("#")]
 
 
-def _cells(line: str, number: int, path: Path) -> list[str]:
+def _delimiter(heading: str) -> str:
+    """The separator of the cells of a heading, by which one of them is "name"; without any a comma."""
+    named = (each for each in DELIMITERS if "name" in (cell.strip(' "') for cell in heading.split(each)))
+    return next((each for each in named if each in heading), ",")
+
+
+def _cells(line: str, number: int, path: Path, delimiter: str) -> list[str]:
     try:
-        return next(csv.reader([line], skipinitialspace=True, strict=True))
+        cells = next(csv.reader([line], delimiter=delimiter, skipinitialspace=True, strict=True))
+        return cells if delimiter == "," else [_DECIMAL_COMMA.sub(r"\1.\2", cell) for cell in cells]
     except csv.Error as error:
         raise InputError(f"line {number}: quotes do not match ({error})", file=path) from None
 
