@@ -8,7 +8,10 @@ from pathlib import Path
 import pytest
 
 from tyrefem import library
+from tyrefem.api import study
 from tyrefem.cli import main
+from tyrefem.compare.study_check import check_study
+from tyrefem.errors import InputError
 
 GOOD = {
     "geometry/nasa-22x5.5-8pr.toml": "a section, ",
@@ -50,6 +53,13 @@ def test_a_loggers_table_is_no_table_of_cases(
     (here / "table.csv").write_text(table, encoding="utf-8")
     assert main(["check", "table.csv"]) == 0
     assert words in capfd.readouterr().out
+
+
+def test_a_run_that_was_not_measured_is_named() -> None:
+    """Its effects would be left out without a word."""
+    assert check_study(study("example-validation", {"run": "run-2"})) == 3
+    with pytest.raises(InputError, match=r"run: no measured run 'run-22'; did you mean 'run-2'\?"):
+        check_study(study("example-validation", {"run": "run-22"}))
 
 
 BAD = {

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tyrefem.compare.experiment import experiments
-from tyrefem.errors import InputError
+from tyrefem.errors import InputError, nearest
 from tyrefem.inputs.study import StudyData
 from tyrefem.mechanics.cycle_schedule import check_cases
 
@@ -14,7 +14,7 @@ def check_study(study: StudyData) -> int:
     Raises
     ------
     InputError : an impossible load, a missing uncertain number, a wrong drive of a measured table, a missing table, run
-        or column.
+        or column; the study's own run is none of the measured ones.
     """
     check_cases(study)
     numbers = study.uncertain_numbers
@@ -28,7 +28,12 @@ def check_study(study: StudyData) -> int:
     for number, entry in enumerate(study.card.measured):
         if entry.drive:
             _check_drive(study, number)
-    return len(experiments(study)) if study.measured else 0
+    planned = experiments(study) if study.measured else ()
+    names = {experiment.origin for experiment in planned}
+    if study.card.run is not None and names and study.card.run not in names:
+        wrong = f"no measured run '{study.card.run}'{nearest(study.card.run, names)}"
+        raise InputError(wrong, field="run", file=study.file)
+    return len(planned)
 
 
 def _check_drive(study: StudyData, number: int) -> None:
