@@ -6,13 +6,13 @@ import os
 import signal
 import sys
 import threading
+import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import BrokenExecutor, ProcessPoolExecutor
 from contextlib import contextmanager, suppress
 from multiprocessing import active_children, current_process, parent_process, resource_tracker
 from multiprocessing.context import SpawnContext, SpawnProcess
 from typing import Any
-from weakref import WeakSet
 
 from threadpoolctl import threadpool_limits
 
@@ -37,8 +37,8 @@ class _ProcessWithoutCtrlC(SpawnProcess):
         _STARTED.add(self)
 
 
-#: Workers of this process.
-_STARTED: WeakSet[_ProcessWithoutCtrlC] = WeakSet()
+#: Workers of this process whose end was not yet looked at.
+_STARTED: set[_ProcessWithoutCtrlC] = set()
 
 
 class _Context(SpawnContext):
@@ -69,7 +69,7 @@ def processes(count: int, begin: Callable[..., None] | None = None, *given: Any)
         yield pool
         pool.shutdown()
     except BaseException as error:
-        unguarded = isinstance(error, BrokenExecutor) and any(each.exitcode == UNGUARDED for each in _STARTED)
+        unguarded = isinstance(error, BrokenExecutor) and UNGUARDED in _exit_codes()
         with interruption_delayed():
             # Running simulations are no longer needed. Waiting tasks are not cancelled: Python 3.11's pool
             # prints a traceback for cancelled tasks of ended processes.
@@ -80,6 +80,16 @@ def processes(count: int, begin: Callable[..., None] | None = None, *given: Any)
             message = 'a script whose work has several processes needs it under: if __name__ == "__main__":'
             raise RuntimeError(message) from None
         raise
+    finally:
+        _STARTED.difference_update([each for each in _STARTED if each.exitcode is not None])
+
+
+def _exit_codes() -> list[int | None]:
+    """Exit codes of the workers of a broken pool. The pool's thread, too, waits for them: only one of both is told."""
+    until = time.monotonic() + 2.0
+    while (codes := [each.exitcode for each in _STARTED]) and None in codes and time.monotonic() < until:
+        time.sleep(0.02)
+    return codes
 
 
 def _start_tracker() -> None:

@@ -31,7 +31,7 @@ _TIME = re.compile(r"^(?:(?:elapsed[ _]?)?(?:time|t)|time[ _]?stamp|date[ _/]?ti
 
 
 #: Quantities that loggers write beside temperatures, by their SI unit. Angles are not included: "deg" may be degC.
-_CHANNELS = ("Pa", "m/s", "N", "m", "kg", "s", "Hz", "W", "J", "m/s**2")
+_CHANNELS = ("Pa", "m/s", "N", "m", "kg", "s", "Hz", "rad/s", "W", "J", "m/s**2")
 
 
 # The degree sign, similar characters, and its form after a wrong decoding.

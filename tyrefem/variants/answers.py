@@ -160,7 +160,8 @@ def hottest(result: FinishedRun, _: float | None) -> Answers:
 )
 def sensors(result: FinishedRun, _: float | None) -> Answers:
     """Temperature of every sensor at the end, and its maximum."""
-    read, regions = result.recorded, result.study.section.regions
+    # The study of a result by a reduced model is made only when it is asked for.
+    read, regions = result.recorded, result.peaks.keys() - {"tyre"}
     return {f"{name}_degC": float(series[-1]) for name, series in read.items()} | {
         highest_name(name, regions): float(series.max()) for name, series in read.items()
     }
