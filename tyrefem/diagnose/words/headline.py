@@ -138,8 +138,9 @@ def _identified(d: DiagnosisData) -> tuple[str, str, str]:
     chance = d.judgement.probability
     sure = f"{stated_words(d, d.best.members, chance, percent(chance))}, among all that was tried; {_closed(d)}."
     sure = " ".join((sure, *alone_words(d, further=True)))
-    values = "values" if len(d.best.members) > 1 else "value"
-    step = f"Check that you believe the {values}, then go on with amended.toml"
+    amounts = [clause for member in d.best.members for clause in effect_amounts(member, d.best)]
+    what = "the values" if len(amounts) > 1 else "the value" if amounts else "this"
+    step = f"Check that you believe {what}, then go on with amended.toml"
     if d.again is not None and d.again.verdict != NO_GAP:
         return wrong, sure, f"{step}; a second look at it says: {d.again.verdict} (folder {look_folder(2)})."
     return wrong, sure, f"{step}{'' if d.again is None else ', in which no gap is left'}."

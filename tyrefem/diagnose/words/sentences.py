@@ -45,7 +45,7 @@ def effect_amounts(candidate: Candidate, fit: FittedSet) -> list[str]:
     The sentence of an effect with an opposite tells the sign of its amplitude: "the road is colder than stated", "by
     24.0 ± 2.0 K".
     """
-    known = [unknown for unknown in candidate.unknowns if unknown in fit.values]
+    known = [unknown for unknown in candidate.unknowns if unknown in fit.values and not unknown.fixed]
     signed = set(candidate.amplitudes[:1]) if candidate.effect.opposite else set()
     clauses = []
     for unknown in known:
