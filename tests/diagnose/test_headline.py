@@ -59,6 +59,12 @@ def doubted(d: DiagnosisData) -> DiagnosisData:
     return judged(d, CONFOUNDED, {("hot-road",): 0.999, ("sun",): 0.001}, doubts=(doubt,))
 
 
+def none_doubted(d: DiagnosisData) -> DiagnosisData:
+    """As if no effect were most probable, and a hot road predicted the held-out runs better."""
+    doubt = "Hot-road predicts the held-out runs better than no effect, by 7 nats."
+    return replace(judged(d, CONFOUNDED, {(): 0.93, ("hot-road",): 0.07}, doubts=(doubt,)), best=d.null)
+
+
 def certain(d: DiagnosisData) -> DiagnosisData:
     return judged(d, CONFOUNDED, {("hot-road", "sun"): 0.54, ("hot-road",): 0.45, ("sun",): 0.01})
 
@@ -90,6 +96,7 @@ VERDICTS: dict[str, Callable[[DiagnosisData], DiagnosisData]] = {
     CONFOUNDED: confounded,
     "confounded, one certain": certain,
     "confounded, doubted": doubted,
+    "confounded, no effect doubted": none_doubted,
     UNEXPLAINED: lambda d: unexplained(d, 1e3),
     "unexplained, rejected": rejected,
     NO_GAP: lambda d: no_gap(d, gap=False),
@@ -110,6 +117,18 @@ def test_every_verdict_says_what_is_wrong_how_sure_and_what_to_do(kind: str, cas
     assert "%" in sure or "nats" in sure
     assert step.split()[0] in {"Check", "A", "Measure", "Nothing", "Exclude", "State"}
     assert d.to_dict()["headline"] == [wrong, sure, step]
+
+
+def test_no_effect_that_the_held_out_runs_doubt_is_no_name(case: Case) -> None:
+    d = none_doubted(case.diagnosis)
+    wrong, sure, _ = headline(d)
+    assert wrong == "Perhaps an effect is missing: the road is warmer than stated, as asphalt in the sun is (hot-road)."
+    assert sure.startswith(
+        "Hot-road predicts the held-out runs better than no effect, by 7 nats (fitted runs alone: 93"
+    )
+    first, second, *_ = verdict_words(d)
+    assert first == "The fitted runs alone need no effect (93 %), but this is not certain."
+    assert second == d.judgement.doubts[0]
 
 
 def test_readings_mostly_outside_the_drive_come_first(case: Case) -> None:

@@ -27,7 +27,7 @@ from tyrefem.diagnose.words.partly import (
     or_outside_words,
     ranges,
 )
-from tyrefem.diagnose.words.result_tables import clearest, competing_sets, inclusion_probability
+from tyrefem.diagnose.words.result_tables import better_held_out, clearest, competing_sets, inclusion_probability
 from tyrefem.diagnose.words.sentences import (
     besides,
     effect_amounts,
@@ -151,6 +151,9 @@ def _confounded(d: DiagnosisData) -> tuple[str, str, str]:
     step = next_words(d) or "Measure at more places or in other runs, or state what you know of these effects."
     if not d.next_experiment or step.startswith("No tested"):
         step = f"{step} Exclude what you know to be absent (exclude in [diagnosis]), then diagnose again."
+    if d.judgement.doubts and not best.members:
+        wrong = f"Perhaps an effect is missing: {_set_words(better_held_out(d))}."
+        return wrong, f"{_opened(d.judgement.doubts[0])} (fitted runs alone: {percent(best.probability)}).", step
     if d.judgement.doubts or d.best.at_bound:
         doubt = d.judgement.doubts[0] if d.judgement.doubts else "Its best value lies beyond a physical bound."
         clause = _joined([effect_clause(d, member) for member in best.members])

@@ -212,6 +212,8 @@ def _confounded(d: DiagnosisData, closing: str) -> tuple[str, ...]:
     if d.judgement.doubts and best.members:
         chance = percent(inclusion_probability(d, best))
         first = f"The fitted runs alone speak for {best.key} ({chance}), but this is not certain: {clauses}."
+    elif d.judgement.doubts:
+        first = f"The fitted runs alone need no effect ({percent(best.probability)}), but this is not certain."
     elif certain:
         first = f"{clauses}: {percent(min(d.judgement.named[member.key] for member in certain))} probable."
         first += "" if d.best.at_bound else besides(d, certain)
