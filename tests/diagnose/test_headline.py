@@ -28,7 +28,7 @@ from tyrefem.diagnose.unknowns.unknown import Unknown
 from tyrefem.diagnose.verdicts.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, PARTLY, UNEXPLAINED, certain_members
 from tyrefem.diagnose.words.headline import QUESTIONS, corrections, headline, label
 from tyrefem.diagnose.words.sentences import noise_words, verdict_words
-from tyrefem.diagnose.words.support import alone_words, support_words
+from tyrefem.diagnose.words.support import alone_words, stated_words, support_words
 from tyrefem.measured import MeasuredRun
 from tyrefem.reports.diagnosis import page
 from tyrefem.reports.diagnosis_figures import pictures
@@ -255,6 +255,15 @@ def test_a_member_that_one_sensor_asks_for_is_said_to_be_that_at_once(case: Case
     assert f"{offset.key} can show only at {dict(offset.choice)['sensor']}." in several
     assert support_words(alone) == alone_words(alone)
     assert member in alone.supports
+
+
+def test_another_run_tells_an_effect_in_one_run_from_that_in_all(case: Case) -> None:
+    odd = next(each for each in case.diagnosis.candidates if each.key == "hot-road in slow")
+    d = replace(case.diagnosis, supports={odd: Support((LeftOut("run", "loaded", 0.07),), "slow")})
+    assert stated_words(d, (odd,), 0.99, "99.0 %") == (
+        "It is only 7.0 % probable without run loaded, which alone tells hot-road in slow from the same effect in all "
+        "runs; with all readings 99.0 %"
+    )
 
 
 def test_no_gap_at_a_large_rms_names_its_corrections_and_is_not_green(case: Case) -> None:
