@@ -266,6 +266,12 @@ def test_another_run_tells_an_effect_in_one_run_from_that_in_all(case: Case) -> 
     )
 
 
+def test_where_no_effect_is_left_one_is_missing_perhaps(case: Case) -> None:
+    d = judged(case.diagnosis, CONFOUNDED, {("hot-road",): 0.91, (): 0.09})
+    assert headline(d)[0].startswith("Perhaps an effect is missing, but ")
+    assert verdict_words(d)[0].startswith("Perhaps an effect is missing, but ")
+
+
 def test_no_gap_at_a_large_rms_names_its_corrections_and_is_not_green(case: Case) -> None:
     quiet, loud = (no_gap(case.diagnosis, gap=gap) for gap in (False, True))
     assert label(quiet) == NO_GAP

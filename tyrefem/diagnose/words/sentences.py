@@ -235,9 +235,13 @@ def _confounded(d: DiagnosisData, closing: str) -> tuple[str, ...]:
 
 
 def missing_words(d: DiagnosisData) -> str:
-    """Whether an effect is missing: only "perhaps" if a discrepancy that needs no effect is the most probable."""
+    """Whether an effect is missing: only "perhaps" if a discrepancy that needs no effect is the most probable.
+
+    Or if no effect at all is among the sets that are left.
+    """
+    none = any(not entry.members and not entry.outside for entry in competing_sets(d))
     leading = d.robustness.models[0] if d.robustness is not None else None
-    perhaps = d.judgement.best.outside or (leading is not None and leading.name != NONE and not leading.best)
+    perhaps = none or d.judgement.best.outside or (leading is not None and leading.name != NONE and not leading.best)
     return "Perhaps an effect is missing" if perhaps else "An effect is missing"
 
 
