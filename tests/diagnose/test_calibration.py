@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from formula import STATED, effect
+from hidden import study
 from scipy.special import expit
 
 from tyrefem.diagnose.inference.evidence import posterior
@@ -22,8 +23,9 @@ from tyrefem.diagnose.layout.conformal import (
     read_calibration,
 )
 from tyrefem.diagnose.layout.false_alarms import Frequency, false_alarms
-from tyrefem.diagnose.layout.linear_layout import LinearLayout
-from tyrefem.diagnose.layout.quick_cases import drawn, posterior_ranks, readings
+from tyrefem.diagnose.layout.isolability import planned_sensitivities
+from tyrefem.diagnose.layout.linear_layout import LinearLayout, linear_layout
+from tyrefem.diagnose.layout.quick_cases import DrawnCause, drawn, posterior_ranks, readings
 from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
 from tyrefem.diagnose.unknowns.candidates import Candidate, Members, SetPrior
 from tyrefem.diagnose.unknowns.unknown import Unknown
@@ -153,6 +155,15 @@ def test_wrong_probabilities_and_ranks_are_noticed() -> None:
             [of_narrow.unknowns[0]])  # fmt: skip
     assert RankTest.of(ranks["right"]).p_value > 0.01
     assert RankTest.of(ranks["narrow"]).p_value < 1e-3
+
+
+def test_without_held_out_runs_heat_of_unknown_origin_is_drawn_too(tmp_path: Any) -> None:
+    owner = study(tmp_path).replace({"mesh.size": "12 mm", "measured": []})
+    of_layout = linear_layout(owner, planned_sensitivities(owner))
+    heat = DrawnCause(-1, (), {}, np.ones(len(of_layout.heat_sd)))
+    fitted, held_out = readings(of_layout, heat, np.random.default_rng(1))
+    assert len(fitted) == len(of_layout.heat)
+    assert len(held_out) == 0
 
 
 def test_the_same_seed_gives_the_same_cases(calibration: Calibration) -> None:

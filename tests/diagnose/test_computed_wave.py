@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 from hidden import study
 
@@ -11,9 +12,11 @@ import tyrefem as tf
 from tyrefem.api import Study
 from tyrefem.diagnose.settings import DiagnosisSettings
 from tyrefem.diagnose.unknowns.candidates import Candidate, catalogue_candidates
-from tyrefem.diagnose.unknowns.computed_wave import NAME, ComputedWave, WithWave, computed_wave
+from tyrefem.diagnose.unknowns.computed_wave import NAME, ComputedWave, WithWave, computed_wave, recorded_wave
 from tyrefem.diagnose.unknowns.unknown import with_values
+from tyrefem.diagnose.words.set_posteriors import SetPosterior, read_posteriors
 from tyrefem.inputs.study import StudyData
+from tyrefem.mechanics.rolling.amplification import Onset
 from tyrefem.mechanics.rolling.critical_speed import ring_speed
 
 FEM = {"mesh.size": "16 mm", "mechanics.strain": "fem", "mechanics.motion": "linear"}
@@ -108,3 +111,15 @@ def test_a_diagnosis_takes_and_notes_them(tmp_path: Path, fast: ComputedWave) ->
     assert diagnosis.notes[0] == fast.note
     (candidate,) = (each for each in diagnosis.candidates if each.name == NAME)
     assert candidate.shapes[0].value(0.0) == pytest.approx(fast.onset.critical_speed)
+
+
+@pytest.mark.parametrize("wave", [ComputedWave(), ComputedWave(Onset(2.7, 55.0, 0.1))])
+def test_a_plan_reads_the_numbers_of_the_diagnosis(wave: ComputedWave) -> None:
+    tyre = driven(9.0)
+    candidates = WithWave(waves, wave)(tyre)
+    (member,) = (each for each in candidates if each.name == NAME)
+    stored = SetPosterior((member,), 1.0, member.unknowns, np.array([1.0, 0.1]), np.eye(2))
+    record = {"runs": ["fast"], "standing_wave": recorded_wave(candidates), "sets": [stored.to_dict()]}
+    (read,) = read_posteriors(record, tyre, DiagnosisSettings())
+    assert read.members == (member,)
+    assert read.unknowns == member.unknowns

@@ -103,6 +103,21 @@ def test_heat_at_a_station(tmp_path: Path) -> None:
     assert not np.any(hot.heat_addend(TyreStub(0.0), "tread", x, 400.0, T))
 
 
+def test_a_phase_of_any_name_is_no_switch_at_a_time(tmp_path: Path) -> None:
+    place = LawPlace(HEAT, 0.06, "all layers", HEATED, 1.0)
+    hot = loaded(tmp_path, place, law({}, "phase 2: braking begins"))(heat="2e4 W/m**3")
+
+    class InPhase(TyreStub):
+        drive = SimpleNamespace(
+            phases=[SimpleNamespace(name="1"), SimpleNamespace(name="2: braking begins")],
+            locate=lambda t: (int(t >= 300.0), 0.0),
+        )
+
+    x, T = np.array([[0.06], [0.0]]), np.array([60.0])
+    assert hot.heat_addend(InPhase(), "tread", x, 400.0, T) == pytest.approx(np.array([2e4]))
+    assert not np.any(hot.heat_addend(InPhase(), "tread", x, 200.0, T))
+
+
 def test_heat_of_several_parts_has_one_law(tmp_path: Path) -> None:
     layer = Unknown("layer", 1.0, effect="missing-heat", choice=(*STATION, ("region", "carcass")))
     place = LawPlace(HEAT, 0.06, "all layers", HEATED, 1.0, ((HEATED, 1.0), (layer, 0.5)))

@@ -28,7 +28,7 @@ from tyrefem.diagnose.unknowns.unknown import Unknown
 from tyrefem.diagnose.verdicts.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, PARTLY, UNEXPLAINED, certain_members
 from tyrefem.diagnose.words.headline import QUESTIONS, corrections, headline, label
 from tyrefem.diagnose.words.sentences import noise_words, verdict_words
-from tyrefem.diagnose.words.support import alone_words, support_words
+from tyrefem.diagnose.words.support import alone_words, stated_words, support_words
 from tyrefem.measured import MeasuredRun
 from tyrefem.reports.diagnosis import page
 from tyrefem.reports.diagnosis_figures import pictures
@@ -57,6 +57,12 @@ def no_gap(d: DiagnosisData, gap: bool) -> DiagnosisData:
 def doubted(d: DiagnosisData) -> DiagnosisData:
     doubt = "Sun predicts the held-out runs better than hot-road, by 45 nats."
     return judged(d, CONFOUNDED, {("hot-road",): 0.999, ("sun",): 0.001}, doubts=(doubt,))
+
+
+def none_doubted(d: DiagnosisData) -> DiagnosisData:
+    """As if no effect were most probable, and a hot road predicted the held-out runs better."""
+    doubt = "Hot-road predicts the held-out runs better than no effect, by 7 nats."
+    return replace(judged(d, CONFOUNDED, {(): 0.93, ("hot-road",): 0.07}, doubts=(doubt,)), best=d.null)
 
 
 def certain(d: DiagnosisData) -> DiagnosisData:
@@ -90,6 +96,7 @@ VERDICTS: dict[str, Callable[[DiagnosisData], DiagnosisData]] = {
     CONFOUNDED: confounded,
     "confounded, one certain": certain,
     "confounded, doubted": doubted,
+    "confounded, no effect doubted": none_doubted,
     UNEXPLAINED: lambda d: unexplained(d, 1e3),
     "unexplained, rejected": rejected,
     NO_GAP: lambda d: no_gap(d, gap=False),
@@ -110,6 +117,18 @@ def test_every_verdict_says_what_is_wrong_how_sure_and_what_to_do(kind: str, cas
     assert "%" in sure or "nats" in sure
     assert step.split()[0] in {"Check", "A", "Measure", "Nothing", "Exclude", "State"}
     assert d.to_dict()["headline"] == [wrong, sure, step]
+
+
+def test_no_effect_that_the_held_out_runs_doubt_is_no_name(case: Case) -> None:
+    d = none_doubted(case.diagnosis)
+    wrong, sure, _ = headline(d)
+    assert wrong == "Perhaps an effect is missing: the road is warmer than stated, as asphalt in the sun is (hot-road)."
+    assert sure.startswith(
+        "Hot-road predicts the held-out runs better than no effect, by 7 nats (fitted runs alone: 93"
+    )
+    first, second, *_ = verdict_words(d)
+    assert first == "The fitted runs alone need no effect (93 %), but this is not certain."
+    assert second == d.judgement.doubts[0]
 
 
 def test_readings_mostly_outside_the_drive_come_first(case: Case) -> None:
@@ -236,6 +255,21 @@ def test_a_member_that_one_sensor_asks_for_is_said_to_be_that_at_once(case: Case
     assert f"{offset.key} can show only at {dict(offset.choice)['sensor']}." in several
     assert support_words(alone) == alone_words(alone)
     assert member in alone.supports
+
+
+def test_another_run_tells_an_effect_in_one_run_from_that_in_all(case: Case) -> None:
+    odd = next(each for each in case.diagnosis.candidates if each.key == "hot-road in slow")
+    d = replace(case.diagnosis, supports={odd: Support((LeftOut("run", "loaded", 0.07),), "slow")})
+    assert stated_words(d, (odd,), 0.99, "99.0 %") == (
+        "It is only 7.0 % probable without run loaded, which alone tells hot-road in slow from the same effect in all "
+        "runs; with all readings 99.0 %"
+    )
+
+
+def test_where_no_effect_is_left_one_is_missing_perhaps(case: Case) -> None:
+    d = judged(case.diagnosis, CONFOUNDED, {("hot-road",): 0.91, (): 0.09})
+    assert headline(d)[0].startswith("Perhaps an effect is missing, but ")
+    assert verdict_words(d)[0].startswith("Perhaps an effect is missing, but ")
 
 
 def test_no_gap_at_a_large_rms_names_its_corrections_and_is_not_green(case: Case) -> None:

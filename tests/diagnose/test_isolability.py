@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from formula import STATED, effect
 from hidden import RIVALS, RUNS, Case
 from jsonschema import Draft7Validator
 from typer.testing import CliRunner
@@ -17,11 +18,13 @@ from tyrefem.diagnose.beside.discrepancy import other_structure
 from tyrefem.diagnose.data.sensitivities import Sensitivities
 from tyrefem.diagnose.forward.evaluations import Evaluations
 from tyrefem.diagnose.forward.forward_model import ForwardModel
+from tyrefem.diagnose.forward.sampling import DriveSampling, SensorSampling
 from tyrefem.diagnose.inference.linear_model import LinearModel
 from tyrefem.diagnose.layout.isolability import (
     MARGIN,
     Isolability,
     competitors_of,
+    fewest_runs,
     isolability,
     layout_sensitivities,
     margins,
@@ -45,6 +48,22 @@ def test_every_candidate_has_a_row_and_nothing_else(isolability_result: Isolabil
     assert [run for runs in isolability_result.runs for run in runs if run == "fast"] == [], (
         "the held-out run is not planned on"
     )
+
+
+def test_the_fewest_of_many_runs_are_not_searched_for_hours() -> None:
+    """An effect that all of 24 runs hardly show: there are 16 million sets of them."""
+    faint, times = effect("faint"), np.arange(3.0)
+    sampling = SensorSampling("crown", times, 1.0, 0.0, 1.0)
+    drives = tuple(DriveSampling(f"run-{number}", {}, False, (sampling,)) for number in range(24))
+    J = np.column_stack([np.ones(3), 0.01 * times])
+    none = (np.zeros(3),) * len(drives)
+    layout = Sensitivities(drives, (STATED, *faint.unknowns), 1, none, none, (J,) * len(drives))
+    prior = SetPrior((faint,), 0.5)
+    few, notes = fewest_runs(replace(layout, drives=drives[:2], jacobians=(J, J)), (faint,), prior, np.array([1.0]))
+    assert (few, notes) == ((), ())
+    few, notes = fewest_runs(layout, (faint,), prior, np.array([1.0]))
+    assert few == ()
+    assert notes == ("The fewest runs are not known: there are too many sets of 4 and more of the 24 fitted runs.",)
 
 
 def test_to_be_told_from_all_takes_at_least_what_being_seen_takes(isolability_result: Isolability) -> None:

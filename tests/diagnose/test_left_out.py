@@ -14,6 +14,9 @@ from tyrefem.diagnose.forward.forward_model import ForwardModel
 from tyrefem.diagnose.settings import DiagnosisSettings
 from tyrefem.diagnose.unknowns.candidates import Candidate, beside_rolling, catalogue_candidates, possible
 from tyrefem.diagnose.unknowns.unknown import of_effect
+from tyrefem.diagnose.words.discrepancy_record import confidence
+from tyrefem.diagnose.words.headline import headline
+from tyrefem.diagnose.words.sentences import verdict_words
 from tyrefem.effects import catalogue
 from tyrefem.effects.hot_road import HotRoad
 from tyrefem.errors import InputError
@@ -41,6 +44,17 @@ def test_swapped_channels_are_identified_and_looked_at_again(tmp_path: Path) -> 
     assert [member.key for member in diagnosis.best.members] == ["swapped-channels (crown-outer, sidewall-outer)"]
     assert diagnosis.again is not None, "the second look at the amended study is finished"
     assert diagnosis.again.verdict == "no gap"
+    # Both sensors show it, and it has no amount.
+    (support,) = diagnosis.supports.values()
+    assert support.only == ""
+    assert {each.name for each in support.left_out} == {*owner.sensors, "slow", "loaded"}
+    assert confidence(diagnosis) > 0.95
+    sentence, _, step = headline(diagnosis)
+    assert sentence.startswith(
+        "Two thermocouples are plugged into each other's channels (crown-outer, sidewall-outer), "
+    )
+    assert "effects.swapped-channels" not in " ".join(verdict_words(diagnosis))
+    assert step.startswith("Check that you believe this, ")
     # The third sensor has no partner left: the second look has no swap among its candidates.
     assert {candidate.name for candidate in diagnosis.again.candidates} == {"hot-road"}
 

@@ -67,3 +67,10 @@ def test_tables_state_the_wider_standard_deviation_and_the_value_of_the_fit(fit:
     assert row["value"] == x
     assert row["sd"] == pytest.approx(math.sqrt(2) * sd)
     assert wider.posterior.sd == pytest.approx(fit.posterior.sd)
+
+
+def test_an_unknown_that_only_an_improbable_model_fitted_has_its_range(fit: FittedSet) -> None:
+    (unknown,) = fit.members[0].unknowns
+    probable, improbable = beside(fit, (0.995, 3.0, 0.2), (0.005, 4.0, 0.5)).models
+    robust = Robustness((replace(probable, values={}), improbable))
+    assert robust.interval(unknown) == (3.0, 5.0)

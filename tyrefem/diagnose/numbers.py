@@ -126,11 +126,15 @@ def correction_words(unknown: Unknown, x: float, sd: float) -> str:
 
 
 def correction_amount(unknown: Unknown, x: float, sd: float) -> str:
-    """The change of a base number or film in per cent, or of a sensor in its unit.
+    """The change of a base number or film in per cent, of a temperature or a sensor in its unit.
 
     >>> correction_amount(Unknown("drive.load", 0.02), 0.0583, 0.004)
     '+6.0 ± 0.4 %'
+    >>> correction_amount(Unknown("drive.ambient", 0.0067, kelvins=298.15), 0.01, 0.002)
+    '+3.0 ± 0.6 K'
     """
+    if unknown.kelvins:
+        return amount(unknown.kelvins * math.expm1(x), unknown.kelvins * sd * math.exp(x), "delta_degC")
     if unknown.effect is None or unknown.effect == "film-scale":
         return amount(100 * math.expm1(x), 100 * sd * math.exp(x), "%")
     return amount(unknown.value(x), sd, unknown.unit)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import tyrefem
 from tyrefem.diagnose.amend import Change, difference
-from tyrefem.diagnose.numbers import amount, base_name, parameter_name, percent, run_words
+from tyrefem.diagnose.numbers import amount, base_name, correction_amount, parameter_name, percent, run_words
 from tyrefem.diagnose.unknowns.candidates import key_of
 from tyrefem.diagnose.unknowns.unknown import Unknown
 from tyrefem.diagnose.verdicts.prior_sensitivity import prior_words
@@ -243,12 +243,19 @@ def _correction(d: DiagnosisData, change: Change) -> dict[str, str]:
     if unknown.effect is None:
         new = value_at(d.study.data, unknown.key, d.study.folder)
         relative = unknown.value(change.x) - 1
+        of_share = {
+            "change": f"{100 * relative:+z.1f} ± {100 * change.sd:.1f} %",
+            "prior": f"± {number(100 * unknown.sd, 2)} %",
+        }
+        of_temperature = {
+            "change": correction_amount(unknown, change.x, change.sd),
+            "prior": f"± {number(unknown.kelvins * unknown.sd, 2)} K",
+        }
         return {
             "what": base_name(unknown),
             "original": str(value_at(d.original.data, unknown.key, d.original.folder)),
             "amended": str(new),
-            "change": f"{100 * relative:+z.1f} ± {100 * change.sd:.1f} %",
-            "prior": f"± {number(100 * unknown.sd, 2)} %",
+            **(of_temperature if unknown.kelvins else of_share),
         }
     if unknown.effect == "film-scale":
         film = dict(unknown.choice)["film"].replace("_", " ")

@@ -138,12 +138,13 @@ class Robustness(Brief):
         return sum(model.probability * model.named.get(key, 0.0) for model in self.models)
 
     def interval(self, unknown: Unknown) -> tuple[float, float]:
-        """Lowest x - 2 sd and highest x + 2 sd of an effect's unknown over the models that are not improbable."""
-        known = [
-            model.values[unknown.key]
-            for model in self.models
-            if unknown.key in model.values and (model is self.models[0] or model.probability > 0.01)
-        ]
+        """Lowest x - 2 sd and highest x + 2 sd of an effect's unknown over the models that are not improbable.
+
+        A shape parameter may be fitted beside improbable models only: then these count.
+        """
+        fitted = [model for model in self.models if unknown.key in model.values]
+        probable = [model for model in fitted if model is self.models[0] or model.probability > 0.01]
+        known = [model.values[unknown.key] for model in probable or fitted]
         return min(x - 2 * sd for x, sd in known), max(x + 2 * sd for x, sd in known)
 
     def spread(self, fit: FittedSet) -> dict[Unknown, float]:

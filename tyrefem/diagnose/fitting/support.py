@@ -70,7 +70,8 @@ def supports(
     """The support of every effect of the best set.
 
     Sets are compared in linear models about their own fits and, with an effect less or another one in its place, about
-    the best fit. Base numbers, sensors and amounts are fitted again without the left-out readings.
+    the best fit. Base numbers, sensors and amounts are fitted again without the left-out readings. The best fit does
+    not tell what is left without an effect that has no amplitude, so that only the sets' own fits count there.
     """
     chances: dict[Candidate, list[LeftOut]] = {member: [] for member in best.members}
     places = {member: _place(member) for member in best.members}
@@ -83,7 +84,7 @@ def supports(
         kept = _Kept(rows_kept)
         sets = {frozenset(members): share + rows.evidence(kept) for members, (share, rows) in models.items()}
         sets.setdefault(frozenset(best.members), prior(best.members) + about.evidence(kept))
-        for member in best.members:
+        for member in (each for each in best.members if not each.presence):
             part = tuple(each for each in best.members if each != member)
             less = about.without(member.unknowns)
             alone = prior(part) + less.evidence(kept)
@@ -111,8 +112,10 @@ def supports(
 
 
 def _place(member: Candidate) -> str:
-    """The sensor or run that alone can show an effect."""
-    return dict(member.choice).get("sensor", member.runs[0] if len(member.runs) == 1 else "")
+    """The sensor or run that alone can show an effect; two swapped sensors both show it."""
+    if [key for key, _ in member.choice] == ["sensor"]:
+        return member.choice[0][1]
+    return member.runs[0] if len(member.runs) == 1 else ""
 
 
 def _groups(residuals: Residuals) -> list[tuple[str, str, Rows]]:

@@ -36,6 +36,8 @@ NEEDS = Requirements("isolability", fitted=True)
 #: Lead m (nats, without noise) of the true set over every other set. With it, noise brings the probability of the true
 #: set below 90 % in one case of twenty: m - 1.645 sqrt(2 m) > ln 9.
 MARGIN = 9.3
+#: Largest number of sets of runs that are tried for the fewest runs: some minutes.
+MOST_SETS = 5000
 #: Assumed interval between two readings, s.
 READING_INTERVAL = 10.0
 
@@ -255,7 +257,7 @@ def isolability(
         separation[i] = at_scale
         smallest[i], last[i] = _threshold(linear, response, candidate, candidates, prior)
         seen[i], _ = _threshold(linear, response, candidate, (), prior)
-    runs = _fewest_runs(known, candidates, prior, smallest)
+    runs, untried = fewest_runs(known, candidates, prior, smallest)
     scale = np.array([candidate.amplitudes[0].sd if candidate.amplitudes else 1.0 for candidate in candidates])
     shares = np.array([1 / sum(other.name == candidate.name for other in candidates) for candidate in candidates])
     return Isolability(
@@ -268,7 +270,7 @@ def isolability(
         separation,
         runs,
         shares,
-        layout_notes(study),
+        (*layout_notes(study), *untried),
         tuple(plugin_summary(study, [candidate.name for candidate in candidates])["plugins"]),
     )
 
@@ -352,16 +354,25 @@ def _threshold(
     return math.inf, competitor
 
 
-def _fewest_runs(
+def fewest_runs(
     known: Sensitivities, candidates: Sequence[Candidate], prior: SetPrior, smallest: Array
-) -> tuple[tuple[str, ...], ...]:
-    """The smallest sets of fitted runs that identify the same effects as all runs, at twice their usual amplitude."""
+) -> tuple[tuple[tuple[str, ...], ...], tuple[str, ...]]:
+    """The smallest sets of fitted runs that identify the same effects as all runs, at twice their usual amplitude.
+
+    And a note, if some sizes were not tried because there are more than `MOST_SETS` sets.
+    """
     names = [drive.name for drive in known.drives]
-    wanted = [i for i in range(len(candidates)) if smallest[i] <= 2.0]
+    # The effect that is hardest to identify fails first.
+    wanted = sorted((i for i in range(len(candidates)) if smallest[i] <= 2.0), key=lambda i: -smallest[i])
     if not wanted:
-        return ()
+        return (), ()
+    tried = 0
     for size in range(1, len(known.fitted) + 1):
         enough = []
+        tried += math.comb(len(known.fitted), size)
+        if tried > MOST_SETS:
+            runs = f"{size} and more of the {len(known.fitted)} fitted runs"
+            return (), (f"The fewest runs are not known: there are too many sets of {runs}.",)
         for chosen in itertools.combinations(known.fitted, size):
             linear = _noiseless(known, chosen)
             ok = all(
@@ -380,5 +391,5 @@ def _fewest_runs(
             if ok:
                 enough.append(tuple(names[i] for i in chosen))
         if enough:
-            return tuple(enough)
-    return ()
+            return tuple(enough), ()
+    return (), ()

@@ -252,12 +252,13 @@ def linear_layout(study: StudyData, known: Sensitivities, settings: DiagnosisSet
     unknown_heat = patches(study, settings)
     sd = np.array([patch.sd for patch in unknown_heat])
     columns = [known.unknowns.index(patch) for patch in unknown_heat]
-    heat = _by_run([known.whitened[number][:, columns] for number in known.fitted])
+    p = len(columns)
+    heat = _by_run([known.whitened[number][:, columns] for number in known.fitted], p)
     held_out = [known.whitened[number] for number in known.held_out]
-    heat_held_out = _by_run([J[:, columns] for J in held_out])
+    heat_held_out = _by_run([J[:, columns] for J in held_out], p)
     k = len(known.unknowns)
     # The runs' own parts of held-out runs are columns of their own, which no fitted run has.
-    of_runs, p = len(known.fitted) * len(columns), len(columns)
+    of_runs = len(known.fitted) * p
     heat_held_out = np.hstack([heat_held_out[:, :p], np.zeros((len(heat_held_out), of_runs)), heat_held_out[:, p:]])
     heat = np.hstack([heat, np.zeros((len(heat), len(known.held_out) * p))])
     return LinearLayout(
@@ -273,14 +274,12 @@ def linear_layout(study: StudyData, known: Sensitivities, settings: DiagnosisSet
     )
 
 
-def _by_run(parts: Sequence[Array]) -> Array:
-    """Columns that all runs share, then those of each run alone."""
-    if not parts:
-        return np.zeros((0, 0))
+def _by_run(parts: Sequence[Array], p: int) -> Array:
+    """``p`` columns that all runs share, then those of each run alone."""
     n = np.cumsum([0, *map(len, parts)])
-    wide = np.zeros((n[-1], parts[0].shape[1] * (1 + len(parts))))
+    wide = np.zeros((n[-1], p * (1 + len(parts))))
     for number, part in enumerate(parts):
-        rows, p = slice(n[number], n[number + 1]), part.shape[1]
+        rows = slice(n[number], n[number + 1])
         wide[rows, :p] = part
         wide[rows, p * (number + 1) : p * (number + 2)] = part
     return wide

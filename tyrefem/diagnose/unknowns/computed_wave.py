@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from tyrefem.cache import Cache
@@ -49,6 +50,21 @@ class ComputedWave:
                 low, high = prior.low - speed, prior.high - speed
                 unknowns.append(replace(unknown, sd=SPREAD * speed, origin=speed, low=low, high=high))
         return replace(candidate, unknowns=tuple(unknowns))
+
+
+def recorded_wave(candidates: Sequence[Candidate]) -> dict[str, float] | None:
+    """The computed numbers that the effect has among some candidates, as plain data; None: those of the catalogue."""
+    wave = next((candidate for candidate in candidates if candidate.name == NAME), None)
+    if wave is None or (speed := _shape(wave).origin) is None:
+        return None
+    return {"gain": wave.amplitudes[0].sd, "critical_speed_m_s": speed}
+
+
+def stored_wave(numbers: Mapping[str, float] | None) -> ComputedWave:
+    """The wave with the numbers of `recorded_wave`."""
+    if numbers is None:
+        return ComputedWave()
+    return ComputedWave(Onset(float(numbers["gain"]), float(numbers["critical_speed_m_s"]), math.nan))
 
 
 def _speed_in(candidate: Candidate, onset: Onset) -> float:

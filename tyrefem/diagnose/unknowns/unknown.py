@@ -14,6 +14,7 @@ from tyrefem.effects.sensor_misplaced import SensorMisplaced
 from tyrefem.inputs.changes import scaled
 from tyrefem.inputs.name_patterns import number_at
 from tyrefem.inputs.study import StudyData
+from tyrefem.inputs.uncertain_numbers import UncertainNumber
 from tyrefem.quantity import parse
 
 Choice = tuple[tuple[str, str], ...]
@@ -35,6 +36,7 @@ class Unknown:
     runs : the measured runs in which the effect acts; empty: all.
     beside : other parameters of the effect (name, value in SI) that a new entry gets with this one; others have the
         effect's defaults.
+    kelvins : a base number that is a temperature, as the study states it, K; 0: another number.
     """
 
     key: str
@@ -48,6 +50,7 @@ class Unknown:
     keys: tuple[str, ...] = ()
     runs: tuple[str, ...] = ()
     beside: tuple[tuple[str, float], ...] = ()
+    kelvins: float = 0.0
 
     @property
     def step(self) -> float:
@@ -162,7 +165,9 @@ def of_effect(
 def base_unknowns(study: StudyData) -> tuple[Unknown, ...]:
     """The uncertain base numbers: relevant numbers of the study, film coefficients, and uncertain values of effects."""
     numbers = tuple(
-        Unknown(number.key, number.sd, keys=number.keys) for number in study.uncertain_numbers if not number.idle
+        Unknown(number.key, number.sd, keys=number.keys, kelvins=_kelvins(number))
+        for number in study.uncertain_numbers
+        if not number.idle
     )
     known = catalogue()
     films: list[Unknown] = []
@@ -178,6 +183,13 @@ def base_unknowns(study: StudyData) -> tuple[Unknown, ...]:
         if unknown.parameter is not None and unknown.parameter.name in effect.sd
     ]
     return (*numbers, *films, *(unknown for unknown in fitted if unknown.sd > 0))
+
+
+def _kelvins(number: UncertainNumber) -> float:
+    """A temperature, K; 0 for another number."""
+    written = number.written[0] if number.written else ""
+    amount, _, unit = written.partition(" ") if isinstance(written, str) else ("", "", "")
+    return float(amount) if unit in ("K", "kelvin") else 0.0
 
 
 def _stated(study: StudyData, name: str, choice: Choice) -> Effect | None:

@@ -166,7 +166,7 @@ def _law_method(law: PlaceLaw, place: LawPlace) -> str:
     """The law over its amplitude."""
     kind = law.fit.switch.kind
     off = ["tyre.speed(t) == 0"] if place.inside or kind == ROLLING else ["tyre.speed(t) > 0"] if kind == REST else []
-    if kind.endswith(BEGINS):
+    if kind.endswith(BEGINS) and not kind.startswith(PHASE):
         off.append(f"t < {round(law.time, 1)!r}")
     if kind == ENDS:
         off.append(f"t >= {round(law.time, 1)!r}")

@@ -27,7 +27,7 @@ from tyrefem.diagnose.words.partly import (
     or_outside_words,
     ranges,
 )
-from tyrefem.diagnose.words.result_tables import clearest, competing_sets, inclusion_probability
+from tyrefem.diagnose.words.result_tables import better_held_out, clearest, competing_sets, inclusion_probability
 from tyrefem.diagnose.words.sentences import (
     besides,
     effect_amounts,
@@ -138,8 +138,9 @@ def _identified(d: DiagnosisData) -> tuple[str, str, str]:
     chance = d.judgement.probability
     sure = f"{stated_words(d, d.best.members, chance, percent(chance))}, among all that was tried; {_closed(d)}."
     sure = " ".join((sure, *alone_words(d, further=True)))
-    values = "values" if len(d.best.members) > 1 else "value"
-    step = f"Check that you believe the {values}, then go on with amended.toml"
+    amounts = [clause for member in d.best.members for clause in effect_amounts(member, d.best)]
+    what = "the values" if len(amounts) > 1 else "the value" if amounts else "this"
+    step = f"Check that you believe {what}, then go on with amended.toml"
     if d.again is not None and d.again.verdict != NO_GAP:
         return wrong, sure, f"{step}; a second look at it says: {d.again.verdict} (folder {look_folder(2)})."
     return wrong, sure, f"{step}{'' if d.again is None else ', in which no gap is left'}."
@@ -150,6 +151,9 @@ def _confounded(d: DiagnosisData) -> tuple[str, str, str]:
     step = next_words(d) or "Measure at more places or in other runs, or state what you know of these effects."
     if not d.next_experiment or step.startswith("No tested"):
         step = f"{step} Exclude what you know to be absent (exclude in [diagnosis]), then diagnose again."
+    if d.judgement.doubts and not best.members:
+        wrong = f"Perhaps an effect is missing: {_set_words(better_held_out(d))}."
+        return wrong, f"{_opened(d.judgement.doubts[0])} (fitted runs alone: {percent(best.probability)}).", step
     if d.judgement.doubts or d.best.at_bound:
         doubt = d.judgement.doubts[0] if d.judgement.doubts else "Its best value lies beyond a physical bound."
         clause = _joined([effect_clause(d, member) for member in best.members])

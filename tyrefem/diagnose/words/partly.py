@@ -37,7 +37,7 @@ def ranges(d: DiagnosisData, member: Candidate) -> list[str]:
         return []
     clauses = []
     for unknown in member.unknowns:
-        if any(unknown.key in model.values for model in robust.models):
+        if not unknown.fixed and any(unknown.key in model.values for model in robust.models):
             low, high = (unknown.value(x) for x in robust.interval(unknown))
             # The sentence of an effect with an opposite tells the sign.
             if unknown in member.amplitudes[:1] and member.effect.opposite and low * high > 0:

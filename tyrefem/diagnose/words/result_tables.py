@@ -122,6 +122,14 @@ def inclusion_probability(d: DiagnosisData, ranked: RankedSet) -> float:
     return min(sum(each.probability for each in having), 1.0) if ranked.members else ranked.probability
 
 
+def better_held_out(d: DiagnosisData) -> RankedSet:
+    """The set of effects that predicts the held-out runs best."""
+    return max(
+        (each for each in d.judgement.ranking if each.members and math.isfinite(each.held_out)),
+        key=lambda each: each.held_out,
+    )
+
+
 def confounded_with(d: DiagnosisData, candidate: Candidate) -> list[str]:
     """The members of competing sets without the candidate; empty unless the verdict is "confounded"."""
     sets = competing_sets(d)

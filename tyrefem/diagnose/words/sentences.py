@@ -45,7 +45,7 @@ def effect_amounts(candidate: Candidate, fit: FittedSet) -> list[str]:
     The sentence of an effect with an opposite tells the sign of its amplitude: "the road is colder than stated", "by
     24.0 ± 2.0 K".
     """
-    known = [unknown for unknown in candidate.unknowns if unknown in fit.values]
+    known = [unknown for unknown in candidate.unknowns if unknown in fit.values and not unknown.fixed]
     signed = set(candidate.amplitudes[:1]) if candidate.effect.opposite else set()
     clauses = []
     for unknown in known:
@@ -212,6 +212,8 @@ def _confounded(d: DiagnosisData, closing: str) -> tuple[str, ...]:
     if d.judgement.doubts and best.members:
         chance = percent(inclusion_probability(d, best))
         first = f"The fitted runs alone speak for {best.key} ({chance}), but this is not certain: {clauses}."
+    elif d.judgement.doubts:
+        first = f"The fitted runs alone need no effect ({percent(best.probability)}), but this is not certain."
     elif certain:
         first = f"{clauses}: {percent(min(d.judgement.named[member.key] for member in certain))} probable."
         first += "" if d.best.at_bound else besides(d, certain)
@@ -233,9 +235,13 @@ def _confounded(d: DiagnosisData, closing: str) -> tuple[str, ...]:
 
 
 def missing_words(d: DiagnosisData) -> str:
-    """Whether an effect is missing: only "perhaps" if a discrepancy that needs no effect is the most probable."""
+    """Whether an effect is missing: only "perhaps" if a discrepancy that needs no effect is the most probable.
+
+    Or if no effect at all is among the sets that are left.
+    """
+    none = any(not entry.members and not entry.outside for entry in competing_sets(d))
     leading = d.robustness.models[0] if d.robustness is not None else None
-    perhaps = d.judgement.best.outside or (leading is not None and leading.name != NONE and not leading.best)
+    perhaps = none or d.judgement.best.outside or (leading is not None and leading.name != NONE and not leading.best)
     return "Perhaps an effect is missing" if perhaps else "An effect is missing"
 
 

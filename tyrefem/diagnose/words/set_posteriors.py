@@ -13,6 +13,7 @@ from tyrefem.brief import Brief
 from tyrefem.diagnose.fitting.fits import linear_about
 from tyrefem.diagnose.inference.evidence import posterior
 from tyrefem.diagnose.unknowns.candidates import Members, catalogue_candidates, in_single_runs
+from tyrefem.diagnose.unknowns.computed_wave import WithWave, recorded_wave, stored_wave
 from tyrefem.diagnose.unknowns.heat_patches import patches
 from tyrefem.diagnose.unknowns.unknown import Unknown, base_unknowns, sensor_unknowns
 from tyrefem.errors import InputError
@@ -123,6 +124,7 @@ def posterior_record(d: DiagnosisData) -> dict[str, Any]:
     """Contents of ``posterior.json``: sets with the posteriors of their unknowns, noise of sensors, names of runs.
 
     ``strain_law``: name and level of the strain law in place of the study's, null if this stands; see `by_law`.
+    ``standing_wave``: computed numbers of the effect, null if those of the catalogue were taken.
     """
     better = d.better_law
     return {
@@ -130,6 +132,7 @@ def posterior_record(d: DiagnosisData) -> dict[str, Any]:
         "verdict": d.verdict,
         "tables": tables(d.original),
         "strain_law": None if better is None else {"name": better.trial.law, "level": better.trial.level},
+        "standing_wave": recorded_wave(d.candidates),
         "runs": [run.name for run in d.gap.runs],
         "noise_K": noise_by_sensor(d),
         "sets": [entry.to_dict() for entry in set_posteriors(d)],
@@ -143,7 +146,7 @@ def read_posteriors(record: Mapping[str, Any], study: StudyData, settings: Any) 
     ------
     InputError : the record belongs to another study.
     """
-    everywhere = catalogue_candidates(study)
+    everywhere = WithWave(catalogue_candidates, stored_wave(record.get("standing_wave")))(study)
     candidates = {
         (each.name, each.choice, each.runs): each
         for each in (*everywhere, *in_single_runs(study, everywhere, [*record["runs"], ""]))

@@ -9,7 +9,7 @@ from tyrefem.diagnose.numbers import at_least, percent, run_words
 
 if TYPE_CHECKING:
     from tyrefem.diagnose.diagnosis import DiagnosisData
-    from tyrefem.diagnose.unknowns.candidates import Members
+    from tyrefem.diagnose.unknowns.candidates import Candidate, Members
 
 
 def stated_words(d: DiagnosisData, members: Members, chance: float, text: str) -> str:
@@ -22,10 +22,10 @@ def stated_words(d: DiagnosisData, members: Members, chance: float, text: str) -
     weakest = _weakest(d)
     if weakest is None:
         return f"{subject} {text} probable"
-    key, left = weakest
+    member, left = weakest
     least = left.probability
     if least < ALONE:
-        alone = f"without {_named(left)}, which alone asks for {key}"
+        alone = f"without {_named(left)}, which alone {_tells(member, left)}"
         return f"{subject} only {percent(least)} probable {alone}; with all readings {text}"
     where = f"without any one sensor or run (least without {_named(left)})"
     lower = at_least(least)
@@ -43,7 +43,7 @@ def alone_words(d: DiagnosisData, *, further: bool = False) -> tuple[str, ...]:
     stated = _weakest(d) if further else None
     for member, support in d.supports.items():
         weakest = support.weakest
-        if stated is not None and stated[0] == member.key and stated[1].probability < ALONE:
+        if stated is not None and stated[0] == member and stated[1].probability < ALONE:
             continue
         if support.only_at:
             sentences.append(f"{member.key} can show only {_where(support.only_at, d)}.")
@@ -70,10 +70,17 @@ def support_words(d: DiagnosisData) -> tuple[str, ...]:
     return (first, *alone)
 
 
-def _weakest(d: DiagnosisData) -> tuple[str, LeftOut] | None:
+def _weakest(d: DiagnosisData) -> tuple[Candidate, LeftOut] | None:
     """The named effect with the smallest probability without one sensor or run, and this one."""
-    known = [(member.key, left) for member, each in d.supports.items() if (left := each.weakest) is not None]
+    known = [(member, left) for member, each in d.supports.items() if (left := each.weakest) is not None]
     return min(known, key=lambda pair: pair[1].probability, default=None)
+
+
+def _tells(member: Candidate, left: LeftOut) -> str:
+    """What a sensor or run alone does for an effect: another run tells an effect in one run from that in all."""
+    if member.runs and left.kind == RUN and left.name not in member.runs:
+        return f"tells {member.key} from the same effect in all runs"
+    return f"asks for {member.key}"
 
 
 def _named(left: LeftOut) -> str:
