@@ -190,7 +190,26 @@ def _section(card: SectionCard, name: str, half: bool, line: Line) -> Section:
         _ = section.wrapping
     except InputError as error:
         raise error if error.field else error.within(field="wrap.region") from None
+    _check_pattern(section)
     return section
+
+
+def _check_pattern(section: Section) -> None:
+    """Raise `InputError` if a pattern would cut more than a tread: its region lies elsewhere too."""
+    if section.patterned is None:
+        return
+    region = section.patterned
+    pieces = [piece for piece in section.pieces if piece.region == region]
+    if any(piece.layer < len(section.layers) - 1 for piece in pieces):
+        raise InputError(
+            f"cuts the outermost layer, but its region '{region}' lies in other layers too; give these another region",
+            field="pattern",
+        )
+    if max(piece.end for piece in pieces) > section.line.length - 1e-9:
+        raise InputError(
+            f"cuts the tread, but its region '{region}' goes on to the bead; let another region follow it",
+            field="pattern",
+        )
 
 
 def _flange_centre(card: SectionCard) -> tuple[float, float] | None:
