@@ -150,7 +150,8 @@ class Section(Brief, PickledFields):
         x = np.abs(np.asarray(s, dtype=float))
         inside = np.zeros(x.shape, dtype=bool)
         for start, end in self.grooves:
-            inside |= (x > start + 1e-9) & (x < end - 1e-9)
+            # A groove at the mid plane has no wall there.
+            inside |= ((x > start + 1e-9) | (start <= 1e-9)) & (x < end - 1e-9)
         return inside
 
     @cached_property
