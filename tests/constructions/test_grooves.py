@@ -171,3 +171,8 @@ def test_a_groove_at_the_mid_plane_is_a_groove_there_too():
     assert float(np.hypot(*np.diff(line[[0, -1]], axis=0)[0])) == pytest.approx(length(mesh, "symmetry"))
     with pytest.raises(tf.InputError, match="outside the rubber, which is 5"):
         tf.study("nasa-22x5.5-8pr", {"section.grooves": MIDDLE, "sensors.x": {"s": "0 mm", "depth": "8 mm"}})
+
+
+def test_a_run_with_a_groove_at_the_mid_plane_ends_with_its_warnings():
+    study = tf.study("nasa-22x5.5-8pr", {"section.grooves": MIDDLE, "mesh.size": "8 mm", "drive.duration": "10 s"})
+    assert isinstance(study.run().warnings, tuple)
