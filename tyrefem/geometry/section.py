@@ -136,9 +136,14 @@ class Section(Brief, PickledFields):
         )
 
     @property
+    def crown(self) -> str:
+        """The region of the outermost layer at the crown."""
+        return next(name for name in self.layers[-1].regions.names if name != GROOVE)
+
+    @property
     def patterned(self) -> str | None:
-        """The region that `pattern` cuts: the outermost layer's at the crown."""
-        return None if self.pattern is None else next(n for n in self.layers[-1].regions.names if n != GROOVE)
+        """The region that `pattern` cuts: `crown`."""
+        return None if self.pattern is None else self.crown
 
     @cached_property
     def grooves(self) -> tuple[tuple[float, float], ...]:
