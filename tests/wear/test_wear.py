@@ -171,3 +171,10 @@ def test_a_table_that_ends_with_the_meridian_is_worn_too() -> None:
     assert study.section.layers[-1].thickness.s[-1] == length
     worn = section_of((worn_section(study, rings(), 10_000.0), Path("worn.toml"), "worn"))
     assert worn.line.length == pytest.approx(length)
+
+
+@pytest.mark.fast
+def test_layers_that_would_move_as_the_tread_wears_are_refused() -> None:
+    with pytest.raises(InputError, match="placed by 'total'") as caught:
+        worn_section(tf.study("nasa-22x5.5-12pr"), rings(), 1000.0)
+    assert caught.value.field == "section.line.reference"

@@ -58,11 +58,18 @@ def worn_section(study: StudyData, wear: RingWear, kilometres: float) -> dict[st
 
     Raises
     ------
-    InputError : a distance that is not positive; a tread that is worn through: the message says after how many km.
+    InputError : a distance that is not positive; a meridian that would move; a tread that is worn through: the message
+        says after how many km.
     """
     if not kilometres > 0:
         raise InputError(f"must be more than 0 km, not {kilometres:g} km", field="distance")
     section = study.section
+    if section.reference in ("total", "outer", section.layers[-1].name):
+        message = (
+            f"the meridian is placed by '{section.reference}', so that all layers would move as the tread wears: place"
+            " it by a layer under the tread"
+        )
+        raise InputError(message, field="section.line.reference", file=study.file)
     profile, outer = WornProfile.of(section, wear), section.layers[-1]
     ends = profile.s[-1]
     s = np.union1d(np.asarray(outer.thickness.s), np.linspace(0.0, ends, STATIONS))
