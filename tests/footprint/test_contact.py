@@ -212,3 +212,13 @@ def test_impossible_requests_get_one_clear_error(tyre: Pressing) -> None:
     with pytest.raises(InputError, match="drum"):
         Road(drum_diameter=-1.0)
     assert tyre.at_deflection(0.0, 24).load == 0
+
+
+def test_a_slight_deflection_is_not_without_load(tyre: Pressing) -> None:
+    """Few harmonics average its contact away; more of them, or an error, not 0 N."""
+    assert tyre.at_deflection(1e-4, 24).load == tyre.at_deflection(1e-4, 36).load == 0.0
+    assert tyre.solve(deflection=1e-4, tolerance=0.5).load > 0
+    with pytest.raises(InputError, match=r"0\.001 mm is too little: 270 harmonics find no contact") as caught:
+        tyre.solve(deflection=1e-6)
+    assert caught.value.field == "deflection"
+    assert tyre.solve(deflection=0.0).load == 0.0

@@ -168,7 +168,8 @@ class Pressing(TyreOnRoad):
 
         Raises
         ------
-        InputError : both or neither of deflection and load; errors of `at_deflection` and `at_load`; no convergence.
+        InputError : both or neither of deflection and load; errors of `at_deflection` and `at_load`; no convergence; a
+            deflection at which no harmonics find a contact.
         """
         if (deflection is None) == (load is None):
             raise InputError("give exactly one of 'deflection' and 'load'")
@@ -181,10 +182,16 @@ class Pressing(TyreOnRoad):
                 footprint = self.at_load(load, count, before)
             if before is not None:
                 footprint = footprint.compared(before)
-                if footprint.error <= tolerance:
+                # Too few harmonics average the whole contact of a slight deflection away: they agree on nothing.
+                if footprint.error <= tolerance and (footprint.load > 0 or deflection == 0):
                     return footprint
             before = footprint
         assert before is not None
+        if not before.load > 0:
+            raise InputError(
+                f"{before.deflection * 1e3:.4g} mm is too little: {LADDER[-1]} harmonics find no contact",
+                field="deflection",
+            )
         raise InputError(
             f"{LADDER[-1]} harmonics leave an error of {before.error:.2g}, more than the tolerance {tolerance:g}",
             field="tolerance",
