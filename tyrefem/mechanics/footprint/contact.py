@@ -70,11 +70,11 @@ class Pressing(TyreOnRoad):
             raise error.within(field="harmonics") from None
 
     def check(self, deflection: float) -> None:
-        """Raise `InputError` for a deflection that is negative or would press the crown on the rim."""
+        """Raise `InputError` for a deflection that is negative or not less than `bottoming`."""
         if not 0 <= deflection < self.bottoming:
             raise InputError(
                 f"a deflection of {deflection * 1e3:.4g} mm is impossible; it must be at least 0 and less than "
-                f"{self.bottoming * 1e3:.4g} mm, where the crown meets the rim",
+                f"{self.bottoming * 1e3:.4g} mm, where {self.end}",
                 field="deflection",
             )
 
@@ -87,7 +87,7 @@ class Pressing(TyreOnRoad):
 
         Raises
         ------
-        InputError : the deflection is negative or would press the crown on the rim.
+        InputError : the deflection is negative, would press the crown on the rim, or the tyre on the drum's axis.
         """
         self.check(deflection)
         grid = self.grid(harmonics, deflection)
@@ -133,7 +133,7 @@ class Pressing(TyreOnRoad):
 
         Raises
         ------
-        InputError : the load is not positive, or more than the tyre can carry before the crown meets the rim.
+        InputError : the load is not positive, or more than the tyre can carry up to `bottoming`.
         """
         if not load > 0:
             raise InputError(f"the load must be positive, not {load:g} N", field="load")
@@ -153,7 +153,7 @@ class Pressing(TyreOnRoad):
             footprint = self.at_deflection(deflection, harmonics, footprint)
         most = self.at_deflection(self.bottoming * (1 - 1e-9), harmonics).load
         raise InputError(
-            f"the tyre cannot carry {load:.5g} N: the crown meets the rim at {most:.5g} N "
+            f"the tyre cannot carry {load:.5g} N: {self.end} at {most:.5g} N "
             f"({self.bottoming * 1e3:.4g} mm)",
             field="load",
         )
