@@ -153,8 +153,7 @@ class Pressing(TyreOnRoad):
             footprint = self.at_deflection(deflection, harmonics, footprint)
         most = self.at_deflection(self.bottoming * (1 - 1e-9), harmonics).load
         raise InputError(
-            f"the tyre cannot carry {load:.5g} N: {self.end} at {most:.5g} N "
-            f"({self.bottoming * 1e3:.4g} mm)",
+            f"the tyre cannot carry {load:.5g} N: {self.end} at {most:.5g} N ({self.bottoming * 1e3:.4g} mm)",
             field="load",
         )
 
