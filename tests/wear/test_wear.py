@@ -178,3 +178,12 @@ def test_layers_that_would_move_as_the_tread_wears_are_refused() -> None:
     with pytest.raises(InputError, match="placed by 'total'") as caught:
         worn_section(tf.study("nasa-22x5.5-12pr"), rings(), 1000.0)
     assert caught.value.field == "section.line.reference"
+
+
+@pytest.mark.fast
+def test_a_thin_sidewall_is_not_worn_through() -> None:
+    """Where nothing wears the outermost layer may be thinner than the tread that must be left."""
+    study = tf.study(STUDY, {"section.thickness_scale.sidewall": 0.15, "sensors": {}})
+    assert min(study.section.layers[-1].thickness.values) < LEFT
+    worn = section_of((worn_section(study, rings(), 10_000.0), Path("worn.toml"), "worn"))
+    assert worn.layers[-1].thickness(0.13) == pytest.approx(study.section.layers[-1].thickness(0.13), rel=1e-4)

@@ -78,10 +78,10 @@ def worn_section(study: StudyData, wear: RingWear, kilometres: float) -> dict[st
     # The table still reaches the end of the meridian.
     s[-1] = outer.thickness.s[-1]
     thickness, depth = outer.thickness(s), profile(s) * kilometres
-    reach = thickness - LEFT - depth
+    # Beyond the tread the layer may be thinner than what a tread must keep.
+    reach = np.where(depth > 0, thickness - LEFT - depth, np.inf)
     if (reach < 0).any():
-        with np.errstate(divide="ignore"):
-            most = float(np.min((thickness - LEFT) / np.maximum(profile(s), 1e-30)))
+        most = float(np.min(((thickness - LEFT) / np.maximum(profile(s), 1e-30))[depth > 0]))
         at = s[int(np.argmin(reach))] * 1e3
         message = f"the tread is worn through {at:.0f} mm from the crown: {most:,.0f} km leave {LEFT * 1e3:g} mm"
         raise InputError(message, field="distance")
