@@ -18,6 +18,7 @@ CORDS = "materials.belt-1.cords"
         ({f"{CORDS}.pairs": False}, "passenger-belt", "cords.pairs", "between 0 and 90 deg.*opposite angle"),
         ({f"{CORDS}.ends": "2000 1/m"}, "passenger-belt", "cords.ends", "do not fit side by side.*at most 1"),
         ({f"{CORDS}.angle_radius": None}, "passenger-belt", "cords.angle_radius", "lift law needs the radius"),
+        ({"materials.cap-ply.cords.lift": True}, "passenger-cap-ply", "cords.lift", "need lift = false"),
         ({f"{CORDS}.plies": 0}, "passenger-belt", "cords.plies", "greater than or equal to 1"),
         ({f"{CORDS}.modulus": "-1 GPa"}, "passenger-belt", "cords.modulus", "more than 0 Pa"),
         (

@@ -155,3 +155,24 @@ def test_a_sensor_stated_in_a_groove_is_refused():
     sensor = {"s": middle, "depth": f"{inside * 1e3:.2f} mm"}
     with pytest.raises(tf.InputError, match=r"sensors\.hollow: depth = .* mm is outside the rubber"):
         tf.study(RADIALS["passenger"].study, {"sensors.hollow": sensor})
+
+
+MIDDLE = {"at": ["0 mm"], "width": "9 mm", "source": "test"}
+
+
+def test_a_groove_at_the_mid_plane_is_a_groove_there_too():
+    section = load({"base": "nasa-22x5.5-8pr", "grooves": MIDDLE})
+    assert section.in_groove([0.0, 0.004, 0.005]).tolist() == [True, True, False]
+    np.testing.assert_allclose(section.rubber_thickness(0.0), section.thickness("carcass", 0.0))
+    r = section.outer_diameter / 2 - 1e-3
+    assert section.contains([[r, 0.0], [r, 1e-3]]).tolist() == [False, False]
+    (line,) = section.boundary_line("symmetry")
+    mesh = build(section, size=4e-3)
+    assert float(np.hypot(*np.diff(line[[0, -1]], axis=0)[0])) == pytest.approx(length(mesh, "symmetry"))
+    with pytest.raises(tf.InputError, match="outside the rubber, which is 5"):
+        tf.study("nasa-22x5.5-8pr", {"section.grooves": MIDDLE, "sensors.x": {"s": "0 mm", "depth": "8 mm"}})
+
+
+def test_a_run_with_a_groove_at_the_mid_plane_ends_with_its_warnings():
+    study = tf.study("nasa-22x5.5-8pr", {"section.grooves": MIDDLE, "mesh.size": "8 mm", "drive.duration": "10 s"})
+    assert isinstance(study.run().warnings, tuple)

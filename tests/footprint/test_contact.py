@@ -212,3 +212,25 @@ def test_impossible_requests_get_one_clear_error(tyre: Pressing) -> None:
     with pytest.raises(InputError, match="drum"):
         Road(drum_diameter=-1.0)
     assert tyre.at_deflection(0.0, 24).load == 0
+
+
+def test_a_slight_deflection_is_not_without_load(tyre: Pressing) -> None:
+    """Few harmonics average its contact away; more of them, or an error, not 0 N."""
+    assert tyre.at_deflection(1e-4, 24).load == tyre.at_deflection(1e-4, 36).load == 0.0
+    assert tyre.solve(deflection=1e-4, tolerance=0.5).load > 0
+    with pytest.raises(InputError, match=r"0\.001 mm is too little: 270 harmonics find no contact") as caught:
+        tyre.solve(deflection=1e-6)
+    assert caught.value.field == "deflection"
+    assert tyre.solve(deflection=0.0).load == 0.0
+
+
+def test_a_tyre_is_not_pressed_past_the_axis_of_its_drum(tyre: Pressing) -> None:
+    """Beyond it the drum's far side would push the tyre out: loads fall, and change their sign."""
+    small = Pressing(tyre.state, Road(drum_diameter=0.06))
+    assert small.bottoming == 0.03 < tyre.bottoming
+    loads = [small.at_deflection(deflection, 24).load for deflection in (0.01, 0.02, 0.029)]
+    assert 0 < loads[0] < loads[1] < loads[2]
+    with pytest.raises(InputError, match=r"less than 30 mm, where the tyre meets the drum's axis"):
+        small.at_deflection(0.032, 24)
+    with pytest.raises(InputError, match=r"cannot carry .* N: the tyre meets the drum's axis at"):
+        small.at_load(1e6, 24)

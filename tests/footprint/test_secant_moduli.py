@@ -94,3 +94,16 @@ def test_cards_without_the_table_need_no_press() -> None:
 def test_an_unknown_choice_is_an_error() -> None:
     with pytest.raises(InputError, match=r"moduli.*'payne' is not allowed.*card, secant"):
         study("nasa-22x5.5-8pr", {"mechanics.moduli": "payne"})
+
+
+def test_a_tyre_that_may_turn_has_the_same_moduli_at_rest(tyre: StudyData) -> None:
+    """With ``rolling`` a tyre at rest stands: its strain cycle is that of a study without."""
+    start = {"drive.speed": {"from": "0 mph", "to": "20 mph"}}
+    standing = secant(tyre).replace(start)
+    turning = standing.replace({"mechanics.rolling": True})
+    (first, energies), (second, others) = (
+        (cycle.tyre.body.parts["tread"].compound, cycle.density)
+        for cycle in (KnotSolver(each).solve(0, 0.0)[1] for each in (standing, turning))
+    )
+    assert first == second
+    assert energies == pytest.approx(others, rel=1e-9)

@@ -56,3 +56,15 @@ def test_tan_delta_laws():
     for incomplete in ({"law": "exponential", "value": 0.2}, {"law": "table"}, {"law": "constant"}):
         with pytest.raises(InputError, match="needs"):
             card(loss_tangent=incomplete)
+
+
+def test_a_table_that_the_law_does_not_read_is_refused():
+    rows = [["0 degC", "1.3"], ["100 degC", "0.8"]]
+    softening = {"rate": "0.003 1/delta_degC", "table": rows}
+    assert card(softening={"law": "table", "table": rows}).softening(0.0) == pytest.approx(1.3)
+    with pytest.raises(InputError, match="only for the law 'table'") as caught:
+        card(softening=softening)
+    assert caught.value.field == "softening.table"
+    for other in ({"law": "exponential", "rate": "0.01 1/delta_degC"}, {"law": "constant"}):
+        with pytest.raises(InputError, match="only for the law 'table'"):
+            card(loss_tangent={"value": 0.2, "table": rows, **other})

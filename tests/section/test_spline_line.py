@@ -9,7 +9,7 @@ import pytest
 import ring_section
 
 from tyrefem.errors import InputError
-from tyrefem.geometry import SectionCard, SplineLine, build
+from tyrefem.geometry import SectionCard, SplineLine, build, load
 
 
 @pytest.fixture
@@ -87,3 +87,20 @@ def test_points_that_make_no_line_are_refused(points: Any, words: str) -> None:
 def test_shoulder_must_lie_on_the_line() -> None:
     with pytest.raises(InputError, match=r"0.2 m long"):
         SplineLine(circle(41), 0.21)
+
+
+def test_the_rim_goes_with_the_points_to_another_diameter() -> None:
+    """The flange stays as far from the bead's outside as it was drawn."""
+    base, smaller = (
+        load({"base": "passenger-205-55r16", "parameters": {"outer_diameter": f"{diameter} mm"}})
+        for diameter in (631.9, 621.9)
+    )
+    assert base.flange_centre is not None
+    assert smaller.flange_centre is not None
+    assert base.flange_centre[0] - smaller.flange_centre[0] == pytest.approx(5e-3)
+    s = np.linspace(0.15, base.line.length, 200)
+    gaps = [
+        np.linalg.norm(section.place(s, section.total_thickness(s)) - section.flange_centre, axis=1).min()
+        for section in (base, smaller)
+    ]
+    assert gaps[1] == pytest.approx(gaps[0], abs=1e-9)

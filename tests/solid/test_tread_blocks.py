@@ -153,3 +153,18 @@ def test_long_blocks_without_grooves_are_a_solid_tread(studies: dict[str, tf.Stu
 def test_impossible_patterns_are_refused(studies: dict[str, tf.Study], changes: dict[str, object], field: str) -> None:
     with pytest.raises(InputError, match=field):
         studies["solid"].replace({**PATTERN, **changes})
+
+
+@pytest.mark.fast
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"section.layers.undertread.regions.0.name": "tread"}, "lies in other layers too"),
+        ({"section.layers.tread.regions": [{"name": "tread"}]}, "goes on to the bead"),
+    ],
+)
+def test_a_pattern_cuts_the_tread_alone(changes: dict[str, object], words: str) -> None:
+    pattern = {"void": 0.1, "block_length": "20 mm", "source": "test"}
+    with pytest.raises(InputError, match=words) as caught:
+        tf.study("passenger-205-55r16", {**changes, "section.pattern": pattern})
+    assert caught.value.field == "pattern"

@@ -15,6 +15,7 @@ import tyrefem as tf
 from tyrefem import library
 from tyrefem.errors import InputError
 from tyrefem.geometry import load
+from tyrefem.geometry.builder import section_of
 from tyrefem.materials.card import MaterialCard
 from tyrefem.materials.wear import Wear
 from tyrefem.wear.ring_wear import RingWear, tread_table
@@ -146,3 +147,43 @@ def test_refused_numbers_of_a_card(changes: dict[str, object], field: str) -> No
     with pytest.raises(InputError) as caught:
         MaterialCard.check({**data, "wear": {**TABLE, **changes}})
     assert caught.value.field == field
+
+
+@pytest.mark.fast
+def test_inner_layers_of_a_worn_section_keep_their_factors() -> None:
+    """The sidewall's factor holds in the layers below the outermost one too."""
+    study = tf.study(STUDY, {"section.thickness_scale": {"sidewall": 1.3, "belt-1": 1.1}})
+    old = section_of((worn_section(study, rings(), 10_000.0), Path("worn.toml"), "worn"))
+    s = np.linspace(0.0, study.section.line.length, 60)
+    for before, after in zip(study.section.layers[:-1], old.layers[:-1], strict=True):
+        np.testing.assert_allclose(after.thickness(s), before.thickness(s), rtol=1e-6)
+
+
+@pytest.mark.fast
+def test_a_table_that_ends_with_the_meridian_is_worn_too() -> None:
+    """Its last station is not rounded to one before the end of the meridian."""
+    name = "truck-295-80r22.5"
+    section = load(name)
+    table, length = section.layers[-1].thickness, section.line.length
+    stations = {"unit": "m", "values": [*(s for s in table.s if s < length), length]}
+    values = {"unit": "m", "values": table(np.array(stations["values"])).tolist()}
+    study = tf.study(name, {"section.layers.tread.s": stations, "section.layers.tread.thickness": values})
+    assert study.section.layers[-1].thickness.s[-1] == length
+    worn = section_of((worn_section(study, rings(), 10_000.0), Path("worn.toml"), "worn"))
+    assert worn.line.length == pytest.approx(length)
+
+
+@pytest.mark.fast
+def test_layers_that_would_move_as_the_tread_wears_are_refused() -> None:
+    with pytest.raises(InputError, match="placed by 'total'") as caught:
+        worn_section(tf.study("nasa-22x5.5-12pr"), rings(), 1000.0)
+    assert caught.value.field == "section.line.reference"
+
+
+@pytest.mark.fast
+def test_a_thin_sidewall_is_not_worn_through() -> None:
+    """Where nothing wears the outermost layer may be thinner than the tread that must be left."""
+    study = tf.study(STUDY, {"section.thickness_scale.sidewall": 0.15, "sensors": {}})
+    assert min(study.section.layers[-1].thickness.values) < LEFT
+    worn = section_of((worn_section(study, rings(), 10_000.0), Path("worn.toml"), "worn"))
+    assert worn.layers[-1].thickness(0.13) == pytest.approx(study.section.layers[-1].thickness(0.13), rel=1e-4)

@@ -90,13 +90,13 @@ def _on_points(card: SectionCard, name: str, half: bool) -> Section:
     parameters = card.parameters
     assert card.line.points is not None
     assert parameters.shoulder_s is not None
-    line = SplineLine(card.line.points, parameters.shoulder_s)
+    line, shift = SplineLine(card.line.points, parameters.shoulder_s), 0.0
     if parameters.outer_diameter is not None:
-        # The points keep their shape; the whole line is shifted along r to give the diameter.
+        # The points keep their shape; the whole line is shifted along r to give the diameter, and the rim with it.
         outside = Layup(_layers(card, line), card.line.reference).faces(0.0)[-1]
         shift = parameters.outer_diameter / 2 - float(outside) - card.line.points[0][0]
         line = SplineLine(tuple((r + shift, z) for r, z in card.line.points), parameters.shoulder_s)
-    return _section(card, name, half, line)
+    return _section(card, name, half, line, shift)
 
 
 def _on_two_arcs(card: SectionCard, name: str, half: bool) -> Section:
@@ -165,7 +165,8 @@ def _with_width(width: float, crown_radius: float, with_shoulder: Callable[[floa
     )
 
 
-def _section(card: SectionCard, name: str, half: bool, line: Line) -> Section:
+def _section(card: SectionCard, name: str, half: bool, line: Line, shift: float = 0.0) -> Section:
+    """The section on a line that lies ``shift`` [m] further out than the card's points."""
     rating = None
     if card.rating is not None:
         rating = Rating(**{key: value for key, value in card.rating if key != "source"})
@@ -181,7 +182,7 @@ def _section(card: SectionCard, name: str, half: bool, line: Line) -> Section:
         inner_volume=card.parameters.inner_volume,
         half=half,
         flange_radius=card.parameters.flange_radius,
-        flange_centre=_flange_centre(card),
+        flange_centre=_flange_centre(card, shift),
         wrap=card.wrap.region if card.wrap else None,
         pattern=TreadPattern(card.pattern.void, card.pattern.block_length) if card.pattern else None,
         groove_boundary=card.grooves.boundary if card.grooves else "outside_air",
@@ -190,12 +191,31 @@ def _section(card: SectionCard, name: str, half: bool, line: Line) -> Section:
         _ = section.wrapping
     except InputError as error:
         raise error if error.field else error.within(field="wrap.region") from None
+    _check_pattern(section)
     return section
 
 
-def _flange_centre(card: SectionCard) -> tuple[float, float] | None:
+def _check_pattern(section: Section) -> None:
+    """Raise `InputError` if a pattern would cut more than a tread: its region lies elsewhere too."""
+    if section.patterned is None:
+        return
+    region = section.patterned
+    pieces = [piece for piece in section.pieces if piece.region == region]
+    if any(piece.layer < len(section.layers) - 1 for piece in pieces):
+        raise InputError(
+            f"cuts the outermost layer, but its region '{region}' lies in other layers too; give these another region",
+            field="pattern",
+        )
+    if max(piece.end for piece in pieces) > section.line.length - 1e-9:
+        raise InputError(
+            f"cuts the tread, but its region '{region}' goes on to the bead; let another region follow it",
+            field="pattern",
+        )
+
+
+def _flange_centre(card: SectionCard, shift: float) -> tuple[float, float] | None:
     r, z = card.parameters.flange_r, card.parameters.flange_z
-    return None if r is None or z is None else (r, z)
+    return None if r is None or z is None else (r + shift, z)
 
 
 def _grooved(card: SectionCard, layers: tuple[Layer, ...], outer: Division) -> tuple[Layer, ...]:

@@ -47,7 +47,8 @@ def boundary_lines(section: Layered, name: str, spacing: float) -> list[Array]:
     length, n = section.line.length, len(section.layers)
     end_face = section.place(length, section.interfaces(length) - section.interfaces(length)[0])
     if name == "symmetry":
-        return [section.place(0.0, section.interfaces(0.0) - section.interfaces(0.0)[0])]
+        rubber = n if section.grooves and section.grooves[0][0] == 0 else n + 1
+        return [section.place(0.0, section.interfaces(0.0)[:rubber] - section.interfaces(0.0)[0])]
     if name == "contained_air":
         start = 0.0 if section.half else -length
         return [face(section, 0, _signed_stations(section, start, length, spacing))]

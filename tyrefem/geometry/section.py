@@ -136,9 +136,14 @@ class Section(Brief, PickledFields):
         )
 
     @property
+    def crown(self) -> str:
+        """The region of the outermost layer at the crown."""
+        return next(name for name in self.layers[-1].regions.names if name != GROOVE)
+
+    @property
     def patterned(self) -> str | None:
-        """The region that `pattern` cuts: the outermost layer's at the crown."""
-        return None if self.pattern is None else next(n for n in self.layers[-1].regions.names if n != GROOVE)
+        """The region that `pattern` cuts: `crown`."""
+        return None if self.pattern is None else self.crown
 
     @cached_property
     def grooves(self) -> tuple[tuple[float, float], ...]:
@@ -150,7 +155,8 @@ class Section(Brief, PickledFields):
         x = np.abs(np.asarray(s, dtype=float))
         inside = np.zeros(x.shape, dtype=bool)
         for start, end in self.grooves:
-            inside |= (x > start + 1e-9) & (x < end - 1e-9)
+            # A groove at the mid plane has no wall there.
+            inside |= ((x > start + 1e-9) | (start <= 1e-9)) & (x < end - 1e-9)
         return inside
 
     @cached_property

@@ -213,6 +213,8 @@ class LossTangent(TanDeltaLaw):
             raise InputError(f"the law '{self.law}' needs 'value'")
         elif self.law == "exponential" and self.rate is None:
             raise InputError("the law 'exponential' needs 'rate', e.g. '0.0148 1/delta_degC'")
+        if self.table is not None and self.law != "table":
+            raise InputError(f"is only for the law 'table', not '{self.law}'", field="table")
         return self
 
     def warnings(self) -> tuple[InputWarning, ...]:

@@ -19,6 +19,8 @@ Constant = Annotated[float, Unit("Pa", ge=-1e9, le=1e9)]
 DENSEST = math.pi / (2 * math.sqrt(3))
 #: Default of bulk modulus over shear modulus.
 BULK_RATIO = 100.0
+#: Smallest angle to the circumference of cords that are lifted, rad.
+FLATTEST = 1e-6
 #: Constants of the strain-energy laws proportional to the shear modulus.
 SHEAR_CONSTANTS = ("shear_modulus", "c10", "c01", "c20", "c30")
 
@@ -149,7 +151,8 @@ class Cords(Card):
 
     Raises
     ------
-    InputError : an angle beyond 0 to 90 deg, or of one sign; touching cords, a lifted angle without its radius.
+    InputError : an angle beyond 0 to 90 deg, or of one sign; touching cords; a lifted angle without its radius, or of
+        cords along the circumference.
 
     >>> belt = Cords.check({"modulus": "110 GPa", "diameter": "0.6 mm", "ends": "862 1/m", "angle": "22 deg",
     ...                     "angle_radius": "303 mm", "source": "estimate: example"})
@@ -201,6 +204,12 @@ class Cords(Card):
             )
         if self.lift and self.angle_radius is None:
             raise InputError("missing; the lift law needs the radius where the angle is given", field="angle_radius")
+        if self.lift and self.angle < FLATTEST:
+            raise InputError(
+                "true with cords along the circumference: below angle_radius the lift law would turn all of them, and"
+                " leave none; such cords need lift = false",
+                field="lift",
+            )
         return self
 
     @property

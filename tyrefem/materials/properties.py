@@ -112,6 +112,8 @@ class Softening(Sourced):
             _ = self._tabulated
         elif self.rate is None:
             raise InputError("the law 'exponential' needs 'rate', e.g. '0.004 1/delta_degC'")
+        elif self.table is not None:
+            raise InputError("is only for the law 'table', not 'exponential'", field="table")
         return self
 
     @property

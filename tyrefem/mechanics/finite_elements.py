@@ -298,7 +298,7 @@ REMEMBERED = 20
 def _turning_provider(study: StudyData) -> Callable[..., FiniteElements]:
     """`provider` with ``mechanics.rolling``: the tyre turns at the load case's speed (`rolling.turning.turn`).
 
-    A tyre at rest, and one without load, is that of `provider`.
+    A tyre at rest, and one without load, is that of `_standing_provider`.
     """
     from tyrefem.mechanics.footprint.press import PressOrder
     from tyrefem.mechanics.footprint.pressed_tyre import TOLERANCE, mechanical_mesh
@@ -307,7 +307,7 @@ def _turning_provider(study: StudyData) -> Callable[..., FiniteElements]:
 
     mechanics = study.card.mechanics
     factor, one_cycle = LOSS_FACTOR[mechanics.loss_convention], mechanics.revolution == "one-cycle"
-    tyre = pressed_tyre(study)
+    standing = _standing_provider(study)
 
     @functools.lru_cache(REMEMBERED)
     def turned(load: float | None, deflection: float | None, pressure: float, drum: float, speed: float) -> Any:
@@ -323,10 +323,8 @@ def _turning_provider(study: StudyData) -> Callable[..., FiniteElements]:
 
     def cycle(case: LoadCase, near: FiniteElements | None = None) -> FiniteElements:
         given = case.deflection if case.by_deflection else case.load
-        laws = strain_laws(study.materials)
         if given <= 0 or not case.speed:
-            footprint = tyre.under(case).footprint(case, large=mechanics.motion == "large")
-            return FiniteElements(tyre.inflated(case.pressure), footprint, case, factor, one_cycle, laws)
+            return standing(case)
         wanted = (None, given) if case.by_deflection else (given, None)
         turning = turned(*wanted, case.pressure, case.drum_diameter, case.speed)
         laws = strain_laws(turning.study.materials)

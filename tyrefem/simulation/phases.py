@@ -74,7 +74,7 @@ SHALLOW = 0.2
 
 def deep_contacts(section: Section, phases: Iterable[PhaseState]) -> tuple[str, ...]:
     """A warning for every phase in which the penetration depth is too large for an averaged film."""
-    tread = float(section.thickness("tread", 0.0))
+    tread = float(section.layers[-1].thickness(0.0))
     return tuple(
         f"phase '{state.name}': one contact cools the tread {state.propagation_depth * 1e3:.2g} mm deep, "
         f"{100 * state.propagation_depth / tread:.0f} % of its thickness at the crown; a film averaged over "

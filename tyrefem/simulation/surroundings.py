@@ -149,8 +149,12 @@ class Surroundings:
 
     @functools.cached_property
     def tread(self) -> tuple[float, float]:
-        """Conductivity through the thickness and heat capacity of the tread at 25 degC, for contact with the road."""
-        card = self.study.materials["tread"]
+        """Conductivity through the thickness and heat capacity of the tread at 25 degC, for contact with the road.
+
+        Without a region ``tread`` it is that of the crown's outside.
+        """
+        cards = self.study.materials
+        card = cards["tread"] if "tread" in cards else cards[self.study.section.crown]
         conductivity, capacity = card.conductivity.law(), card.heat_capacity()
         k = conductivity(25.0) if callable(conductivity) else conductivity
         return float(np.ravel(k)[-1]), float(capacity(25.0) if callable(capacity) else capacity)

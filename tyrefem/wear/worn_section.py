@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 
 from tyrefem import library
 from tyrefem.errors import InputError
+from tyrefem.quantity import parse
 from tyrefem.wear.ring_wear import RingWear
 
 if TYPE_CHECKING:
@@ -56,21 +58,30 @@ def worn_section(study: StudyData, wear: RingWear, kilometres: float) -> dict[st
 
     Raises
     ------
-    InputError : a distance that is not positive; a tread that is worn through: the message says after how many km.
+    InputError : a distance that is not positive; a meridian that would move; a tread that is worn through: the message
+        says after how many km.
     """
     if not kilometres > 0:
         raise InputError(f"must be more than 0 km, not {kilometres:g} km", field="distance")
     section = study.section
+    if section.reference in ("total", "outer", section.layers[-1].name):
+        message = (
+            f"the meridian is placed by '{section.reference}', so that all layers would move as the tread wears: place"
+            " it by a layer under the tread"
+        )
+        raise InputError(message, field="section.line.reference", file=study.file)
     profile, outer = WornProfile.of(section, wear), section.layers[-1]
     ends = profile.s[-1]
     s = np.union1d(np.asarray(outer.thickness.s), np.linspace(0.0, ends, STATIONS))
     # Stations less than 10 micrometres apart are one.
     s = np.unique(np.round(np.append(s, min(ends * (1 + 1e-3), section.line.length)), 5))
+    # The table still reaches the end of the meridian.
+    s[-1] = outer.thickness.s[-1]
     thickness, depth = outer.thickness(s), profile(s) * kilometres
-    reach = thickness - LEFT - depth
+    # Beyond the tread the layer may be thinner than what a tread must keep.
+    reach = np.where(depth > 0, thickness - LEFT - depth, np.inf)
     if (reach < 0).any():
-        with np.errstate(divide="ignore"):
-            most = float(np.min((thickness - LEFT) / np.maximum(profile(s), 1e-30)))
+        most = float(np.min(((thickness - LEFT) / np.maximum(profile(s), 1e-30))[depth > 0]))
         at = s[int(np.argmin(reach))] * 1e3
         message = f"the tread is worn through {at:.0f} mm from the crown: {most:,.0f} km leave {LEFT * 1e3:g} mm"
         raise InputError(message, field="distance")
@@ -80,14 +91,32 @@ def worn_section(study: StudyData, wear: RingWear, kilometres: float) -> dict[st
         raise InputError(message, field="section", file=study.file)
     data = copy.deepcopy(data)
     layer = data["layers"][-1]
-    layer["s"] = {"unit": "mm", "values": [round(float(v) * 1e3, 5) for v in s]}
-    layer["thickness"] = {"unit": "mm", "values": [round(float(v) * 1e3, 5) for v in thickness - depth]}
+    layer |= {"s": _millimetres(s), "thickness": _millimetres(thickness - depth)}
     layer["source"] = f"{layer.get('source', '')}; tread worn by {kilometres:,.0f} km (tyrefem wear)"
-    scales = data.get("parameters", {}).get("thickness_scale", {})
-    for region in section.layers[-1].regions.names:
-        scales.pop(region, None)
+    _without_scales(data, section)
     if "outer_diameter" in data.get("parameters", {}):
         crown = float(profile(np.zeros(1))[0]) * kilometres
         data["parameters"]["outer_diameter"] = f"{(section.outer_diameter - 2 * crown) * 1e3:.6g} mm"
     data["title"] = f"{data.get('title', section.name)}, worn by {kilometres:,.0f} km"
     return data
+
+
+def _without_scales(data: dict[str, Any], section: Section) -> None:
+    """Take the factors of the outermost layer's regions out of a card: its new table has them.
+
+    Where such a region lies in other layers too, all layers get tables with their factors.
+    """
+    scales = data.get("parameters", {}).get("thickness_scale", {})
+    taken = {name: scales.pop(name) for name in section.layers[-1].regions.names if name in scales}
+    scaled = {name for name, factor in taken.items() if parse(factor, "1") != 1}
+    inner = section.layers[:-1]
+    if any(scaled & set(layer.regions.names) for layer in inner):
+        for card, layer in zip(data["layers"], inner, strict=False):
+            profile = layer.thickness
+            card |= {"s": _millimetres(profile.s), "thickness": _millimetres(profile.values)}
+        scales.clear()
+
+
+def _millimetres(values: Iterable[float]) -> dict[str, Any]:
+    """A row of lengths, m, for a card."""
+    return {"unit": "mm", "values": [round(float(value) * 1e3, 7) for value in values]}

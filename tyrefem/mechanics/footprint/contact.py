@@ -70,11 +70,11 @@ class Pressing(TyreOnRoad):
             raise error.within(field="harmonics") from None
 
     def check(self, deflection: float) -> None:
-        """Raise `InputError` for a deflection that is negative or would press the crown on the rim."""
+        """Raise `InputError` for a deflection that is negative or not less than `bottoming`."""
         if not 0 <= deflection < self.bottoming:
             raise InputError(
                 f"a deflection of {deflection * 1e3:.4g} mm is impossible; it must be at least 0 and less than "
-                f"{self.bottoming * 1e3:.4g} mm, where the crown meets the rim",
+                f"{self.bottoming * 1e3:.4g} mm, where {self.end}",
                 field="deflection",
             )
 
@@ -87,7 +87,7 @@ class Pressing(TyreOnRoad):
 
         Raises
         ------
-        InputError : the deflection is negative or would press the crown on the rim.
+        InputError : the deflection is negative, would press the crown on the rim, or the tyre on the drum's axis.
         """
         self.check(deflection)
         grid = self.grid(harmonics, deflection)
@@ -133,7 +133,7 @@ class Pressing(TyreOnRoad):
 
         Raises
         ------
-        InputError : the load is not positive, or more than the tyre can carry before the crown meets the rim.
+        InputError : the load is not positive, or more than the tyre can carry up to `bottoming`.
         """
         if not load > 0:
             raise InputError(f"the load must be positive, not {load:g} N", field="load")
@@ -153,8 +153,7 @@ class Pressing(TyreOnRoad):
             footprint = self.at_deflection(deflection, harmonics, footprint)
         most = self.at_deflection(self.bottoming * (1 - 1e-9), harmonics).load
         raise InputError(
-            f"the tyre cannot carry {load:.5g} N: the crown meets the rim at {most:.5g} N "
-            f"({self.bottoming * 1e3:.4g} mm)",
+            f"the tyre cannot carry {load:.5g} N: {self.end} at {most:.5g} N ({self.bottoming * 1e3:.4g} mm)",
             field="load",
         )
 
@@ -168,7 +167,8 @@ class Pressing(TyreOnRoad):
 
         Raises
         ------
-        InputError : both or neither of deflection and load; errors of `at_deflection` and `at_load`; no convergence.
+        InputError : both or neither of deflection and load; errors of `at_deflection` and `at_load`; no convergence; a
+            deflection at which no harmonics find a contact.
         """
         if (deflection is None) == (load is None):
             raise InputError("give exactly one of 'deflection' and 'load'")
@@ -181,10 +181,16 @@ class Pressing(TyreOnRoad):
                 footprint = self.at_load(load, count, before)
             if before is not None:
                 footprint = footprint.compared(before)
-                if footprint.error <= tolerance:
+                # Too few harmonics average the whole contact of a slight deflection away: they agree on nothing.
+                if footprint.error <= tolerance and (footprint.load > 0 or deflection == 0):
                     return footprint
             before = footprint
         assert before is not None
+        if not before.load > 0:
+            raise InputError(
+                f"{before.deflection * 1e3:.4g} mm is too little: {LADDER[-1]} harmonics find no contact",
+                field="deflection",
+            )
         raise InputError(
             f"{LADDER[-1]} harmonics leave an error of {before.error:.2g}, more than the tolerance {tolerance:g}",
             field="tolerance",

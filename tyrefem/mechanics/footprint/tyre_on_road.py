@@ -53,7 +53,17 @@ class TyreOnRoad(Brief):
 
     @functools.cached_property
     def bottoming(self) -> float:
-        """Deflection at which the crown's inner surface would meet the highest fixed point (the rim's flange), m."""
+        """Greatest deflection, m: at most half the drum's diameter, and less than would press the crown's inner surface
+        on the highest fixed point (the rim's flange)."""
+        return float(min(self._to_rim, self.road.drum_diameter / 2))
+
+    @property
+    def end(self) -> str:
+        """What ends the deflection at `bottoming`."""
+        return "the crown meets the rim" if self.bottoming == self._to_rim else "the tyre meets the drum's axis"
+
+    @functools.cached_property
+    def _to_rim(self) -> float:
         elements, state = self.harmonics.elements, self.state
         held = [elements.nodes[0, elements.boundary_nodes(name)].max() for name in state.fixed]
         held += [state.rim_top] if state.rim_top else []
