@@ -152,7 +152,8 @@ def _confounded(d: DiagnosisData) -> tuple[str, str, str]:
     if not d.next_experiment or step.startswith("No tested"):
         step = f"{step} Exclude what you know to be absent (exclude in [diagnosis]), then diagnose again."
     if d.judgement.doubts and not best.members:
-        wrong = f"Perhaps an effect is missing: {_set_words(better_held_out(d))}."
+        better = better_held_out(d)
+        wrong = "Perhaps an effect is missing" + ("." if better is None else f": {_set_words(better)}.")
         return wrong, f"{_opened(d.judgement.doubts[0])} (fitted runs alone: {percent(best.probability)}).", step
     if d.judgement.doubts or d.best.at_bound:
         doubt = d.judgement.doubts[0] if d.judgement.doubts else "Its best value lies beyond a physical bound."

@@ -122,11 +122,12 @@ def inclusion_probability(d: DiagnosisData, ranked: RankedSet) -> float:
     return min(sum(each.probability for each in having), 1.0) if ranked.members else ranked.probability
 
 
-def better_held_out(d: DiagnosisData) -> RankedSet:
-    """The set of effects that predicts the held-out runs best."""
+def better_held_out(d: DiagnosisData) -> RankedSet | None:
+    """The set of effects that predicts the held-out runs best; None without such runs."""
     return max(
         (each for each in d.judgement.ranking if each.members and math.isfinite(each.held_out)),
         key=lambda each: each.held_out,
+        default=None,
     )
 
 
