@@ -87,3 +87,11 @@ def test_the_files(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
             rows = list(csv.DictReader(lines))
         assert list(rows[0]) == ["x_m", "y_m", "pressure_Pa"]
         assert sum(float(row["pressure_Pa"]) for row in rows) * 25e-6 == pytest.approx(2700 * 4.4482216, rel=1e-6)
+
+
+def test_half_and_whole_section_have_one_map(pressed: Pressed) -> None:
+    """The tread spreads along the axis under its load, whether the other half is solved or mirrored."""
+    whole = press(study(STUDY, {**COARSE, "mesh.section": "full"}), deflection=0.015)
+    maps = [pressed_map(each.footprint, 2e-3) for each in (pressed, whole)]
+    assert maps[0].y == pytest.approx(maps[1].y)
+    assert maps[0].pressure == pytest.approx(maps[1].pressure, abs=1e-6 * maps[0].pressure.max())

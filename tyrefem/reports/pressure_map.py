@@ -55,6 +55,8 @@ def pressed_map(footprint: Footprint, cell: float = CELL) -> PressureMap:
     grid = footprint.grid
     z = grid.tread.places[1]
     x, _, across = grid.places(footprint.displacement, 0.0)
+    if footprint.pressing.tread.half:
+        across = across + grid.axial(footprint.amplitudes)
     ahead, y = (values.reshape(grid.n_angles, -1) for values in (x, across))
     forces = footprint.normal_forces
     low, high = _strips(z, grid.tread.widths[1], grid.tread.grooves)

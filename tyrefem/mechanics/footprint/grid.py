@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
 from tyrefem.mechanics.footprint.compliance import TreadCompliance
+from tyrefem.mechanics.footprint.elements import COMPONENTS
 
 Array = NDArray[np.float64]
 
@@ -94,6 +95,12 @@ class ContactGrid(Brief):
         """(c, k) displacements, m, averaged with the hats, of amplitudes (n, n_dofs) of the first n harmonics."""
         at = np.asarray(amplitudes)[:, self.tread.dofs]
         return np.einsum("cnj,ncm->cjm", self.shapes[:, : len(at)], at).reshape(len(self.shapes), -1)
+
+    def axial(self, amplitudes: Array) -> Array:
+        """(k,) displacements along the axis, m, averaged with the hats, of amplitudes (n, n_dofs) of the first n
+        harmonics; also of a half section, on which nothing loads them."""
+        at = np.asarray(amplitudes)[:, COMPONENTS * self.tread.nodes + 1]
+        return np.asarray(self.shapes[0, : len(at)].T @ at).ravel()
 
     def places(self, displacement: Array, shift: float) -> Array:
         """(3, k) points (x, y, z), m, at the angles plus ``shift``, with displacements (c, k) added."""
