@@ -9,12 +9,9 @@ import pytest
 from constructions import RADIALS
 
 import tyrefem as tf
-from tyrefem.geometry.meshing import build
 from tyrefem.materials.card import material
 from tyrefem.materials.cord_layers import masses, region_thickness
 from tyrefem.materials.elasticity import Cords, MooneyRivlin, NeoHookean, Yeoh
-from tyrefem.mechanics.solid.cords import lifted_ends
-from tyrefem.mechanics.solid.tyre_body import tyre_body
 
 pytestmark = pytest.mark.fast
 
@@ -118,39 +115,3 @@ def test_the_tyre_has_its_standard_size(name):
     sizes = {"passenger": (0.632, 0.214), "truck": (1.044, 0.298), "aircraft": (0.5504, 0.1362)}
     section = RADIALS[name].section
     assert np.array([section.outer_diameter, section.overall_width]) == pytest.approx(sizes[name], rel=5e-3)
-
-
-def fractions(study, region, size):
-    """v_c at the Gauss points of a region, their stations, distances from the meridian, and cords per metre, 1/m."""
-    mesh, cords = build(study.section, size=size, through=1), study.materials[region].cords
-    body = tyre_body(study, mesh)
-    points = body.rings.points[:, body.mesh.subdomains[region]]
-    s, y = study.section.line.nearest(np.moveaxis(points, 0, -1))
-    ends = cords.ends * lifted_ends(cords.angle, cords.angle_radius, points[0])
-    (layer,) = body.parts[region].cords
-    return layer.stiffness / cords.modulus, s, y, ends * math.pi * cords.diameter**2 / 4
-
-
-@pytest.mark.parametrize("name", ["truck", "aircraft"])
-def test_each_leg_of_the_chafers_fabric_has_all_its_cords(name):
-    """Inner and outer leg side by side: v_c = ends pi d^2 / (4 h), h the thickness of one of them."""
-    radial = RADIALS[name]
-    section = radial.section
-    fraction, s, y, area = fractions(tf.study(radial.study), "chafer-fabric", radial.size)
-    inner = y < section.interfaces(s)[1]
-    assert 0.1 < inner.mean() < 0.9
-    thickness = np.where(inner, section.layers[0].thickness(s), section.layers[-1].thickness(s))
-    np.testing.assert_allclose(fraction, area / thickness, rtol=1e-6)
-
-
-def test_neighbouring_layers_of_a_region_share_its_cords():
-    study = tf.study("passenger-205-55r16")
-    materials = {region: card for region, card in study.data["materials"].items() if region != "liner"}
-    thick = study.replace(
-        {"section.layers.liner.regions.0.name": "body-ply", "materials": materials, "mechanics.energy": None}
-    )
-    fraction, s, _, area = fractions(thick, "body-ply", RADIALS["passenger"].size)
-    first, second = (layer.thickness(s) for layer in thick.section.layers[:2])
-    start = thick.section.layers[0].regions.ends[0]
-    # Below the liner's end the ply is alone.
-    np.testing.assert_allclose(fraction, area / np.where(s < start, first + second, second), rtol=1e-6)
