@@ -198,13 +198,13 @@ def _stages(points: ForcePoints, always: Any, odd: Any, camber: Any, pressure: s
     level = np.abs(points.camber) <= ZERO
     slips, cambered = _slips(slip[level] if level.any() else slip), _slips(slip[~level])
 
-    def told(names: str, needs: Mapping[str, int], known: int) -> list[str]:
+    def tellable(names: str, needs: Mapping[str, int], known: int) -> list[str]:
         return [name for name in names.split() if known >= needs.get(name, needs.get(name[:2], 0))]
 
     tables = [always, *([odd] if slip.min() < -ZERO and slip.max() > ZERO else [])]
-    stages = [told(those, SLIPS, slips) for table in tables for least, those in table.items() if loads >= least]
+    stages = [tellable(those, SLIPS, slips) for table in tables for least, those in table.items() if loads >= least]
     if _count(points.camber) > 1:
-        stages += [told(those, CAMBERED_SLIPS, cambered) for least, those in camber.items() if loads >= least]
+        stages += [tellable(those, CAMBERED_SLIPS, cambered) for least, those in camber.items() if loads >= least]
     if _count(points.pressure) > 1:
         stages.append(pressure.split())
     return [stage for stage in stages if stage]
