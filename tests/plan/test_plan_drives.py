@@ -45,6 +45,16 @@ def test_a_phase_that_sets_its_speed_is_varied_by_its_name() -> None:
     assert set(candidate_drives(study)[0].changes) == {"phases.out.speed", "load", "pressure"}
 
 
+def test_the_factor_on_a_phase_s_speed_is_that_of_this_phase() -> None:
+    speeds = {"1": "20 mph", "phase 2": "40 mph"}
+    phases = [{"name": name, "speed": speed, "duration": "60 s"} for name, speed in speeds.items()]
+    limits = {"drive.phases.1.speed": ["10 mph", "30 mph"], "drive.phases.phase 2.speed": ["40 mph", "50 mph"]}
+    study = tf.study("hidden-effect", COARSE).replace({"drive.phases": phases, "measured": [], "plan.limits": limits})
+    ratios = {drive.name: drive.ratios["phases.phase 2.speed"] for drive in candidate_drives(study)}
+    assert ratios["1 speed 10 mph, phase 2 speed 50 mph"] == pytest.approx(1.25)
+    assert ratios["1 speed 30 mph, phase 2 speed 40 mph"] == pytest.approx(1.0)
+
+
 def test_longer_runs_cost_more_with_a_cost_per_hour() -> None:
     limits = {"drive.phases.rolling.duration": ["600 s", "4200 s"]}
     drives = candidate_drives(planned({"limits": limits, "drives": 3, "run_cost": 2.0, "hour_cost": 5.0}))

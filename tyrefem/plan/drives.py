@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
+from tyrefem.cards.entries import entry_number
 from tyrefem.diagnose.layout.isolability import READING_INTERVAL
 from tyrefem.errors import InputError, nearest
 from tyrefem.inputs.changes import scaled
@@ -114,11 +115,16 @@ def _drive(study: StudyData, changes: dict[str, str]) -> CandidateDrive:
 
 
 def _ratios(study: StudyData, driven: StudyData, changes: Mapping[str, str]) -> dict[str, float]:
-    """Quantity -> factor on the study's drive, where the first phase that has the quantity gives both as numbers."""
+    """Quantity -> factor on the study's drive, where the first phase that has the quantity gives both as numbers.
+
+    A quantity of a phase is compared in this phase.
+    """
     ratios: dict[str, float] = {}
+    phases = list(zip(study.card.drive.phases, driven.card.drive.phases, strict=False))
+    names = [{"name": str(phase.name)} for phase in study.card.drive.phases]
     for key in changes:
-        name = key.rpartition(".")[2]
-        for before, after in zip(study.card.drive.phases, driven.card.drive.phases, strict=False):
+        of_phase, _, name = key.removeprefix("phases.").rpartition(".")
+        for before, after in [phases[entry_number(names, of_phase, key)]] if of_phase else phases:
             old, new = getattr(before, name), getattr(after, name)
             old, new = (getattr(value, "start", value) for value in (old, new))
             if old and new and name in DEFAULT_FACTORS:
