@@ -19,6 +19,7 @@ from tyrefem.diagnose.law.places import FILM, FLUX, HEAT, LOSS, LawPlace
 from tyrefem.diagnose.law.terms import LawTerms, Switch
 from tyrefem.diagnose.unknowns.unknown import Unknown
 from tyrefem.diagnose.words.draft_effect import draft_effects
+from tyrefem.diagnose.words.law import limits
 from tyrefem.effects import catalogue, use_effects
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import study
@@ -116,6 +117,15 @@ def test_a_phase_of_any_name_is_no_switch_at_a_time(tmp_path: Path) -> None:
     x, T = np.array([[0.06], [0.0]]), np.array([60.0])
     assert hot.heat_addend(InPhase(), "tread", x, 400.0, T) == pytest.approx(np.array([2e4]))
     assert not np.any(hot.heat_addend(InPhase(), "tread", x, 200.0, T))
+
+
+def test_a_law_with_an_exponent_of_zero_is_no_other_law() -> None:
+    best = law({"load": 1.0}, "begins", 300.0)
+    others = [law({"load": 1.0, "speed": speed}, "begins", 300.0).fit for speed in (0.03, 0.3)]
+    others = [replace(fit, covariance=1e-6 * np.eye(2)) for fit in others]
+    assert limits(replace(best, alternatives=((others[0], 1.0),))) == []
+    (sentence,) = limits(replace(best, alternatives=tuple((fit, 1.0) for fit in others)))
+    assert sentence == "These runs do not tell it from load^1.0 × speed^0.3, it begins"
 
 
 def test_heat_of_several_parts_has_one_law(tmp_path: Path) -> None:

@@ -111,9 +111,11 @@ def _term(entry: Exponent) -> str:
 
 
 def _short(fit: LawFit) -> str:
-    """A law without intervals, for a list of alternatives."""
+    """A law without intervals, for a list of alternatives; without terms whose exponents are 0 as written."""
     parts = []
     for name, mean in zip(fit.terms, fit.mean, strict=True):
+        if abs(mean) < (5e-4 if name == WARM else 0.05):
+            continue
         parts.append(f"exp({100 * mean:+.1f} %/K × temperature)" if name == WARM else f"{name}^{mean:.1f}")
     when = "" if fit.switch.kind == NO_SWITCH else f", {_kind(fit.switch.kind)}"
     return f"{' × '.join(parts) or 'constant heat'}{when}"
