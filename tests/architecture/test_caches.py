@@ -31,6 +31,7 @@ ALLOWED = {
     "variants/task.py: _folders = []": "the temporary folder of this process, one",
     "diagnose/forward/evaluations.py: _MODEL = {}": "the latest forward model of a worker process, one",
     "diagnose/blind/kept_cases.py: _WORK = []": "what the cases of a worker process share, given when it starts",
+    "processes.py: _STARTED = set()": "the workers that this process has started, until they have ended",
     "compare/packed_drive.py: _TYRES = {}": "the drives of a comparison, taken out when it ends",
     "cards/__init__.py: cache(_plausible)": "one value for every class of card",
     "cards/__init__.py: cache(_allowed)": "one value for every class of card",
