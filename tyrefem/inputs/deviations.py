@@ -28,10 +28,12 @@ class Deviation:
         try:
             return SHARE(value)
         except InputError:
-            match = _AMOUNT.match(value) if isinstance(value, str) else None
+            if not isinstance(value, str):
+                raise
+            match = _AMOUNT.match(value)
             if match is None or not match[2] or "%" in match[2]:
                 raise
-            return value if isinstance(value, str) else ""
+            return value
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         from pydantic_core import core_schema
