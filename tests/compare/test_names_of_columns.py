@@ -73,7 +73,7 @@ def test_all_unknown_columns_are_named_at_once(study: Study) -> None:
     runs = [logged(study, "a", crown="crwn"), logged(study, "b", crown="T9", shoulder="sholder")]
     words = (
         "columns 'crwn' (did you mean 'crown'?), 'T9', 'sholder' (did you mean 'shoulder'?) are no sensors of study "
-        "'toy'; allowed: contained-air, crown, rim, shoulder; rename them, or ignore them"
+        "'toy'; allowed: contained-air, crown, rim, shoulder; rename them, ignore them, or add them to [sensors]"
     )
     with pytest.raises(InputError, match=re.escape(words)):
         compare(study, runs)

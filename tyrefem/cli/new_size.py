@@ -27,6 +27,7 @@ def new_size(kind: str, size: str, numbers: Mapping[str, Any], out: Path | None,
     """
     from tyrefem import library
     from tyrefem.geometry import load
+    from tyrefem.geometry.named_places import named_places
     from tyrefem.output import atomic_path, place_of_output
     from tyrefem.output.file import results_file
     from tyrefem.schemas.line import schema_line
@@ -56,7 +57,10 @@ def new_size(kind: str, size: str, numbers: Mapping[str, Any], out: Path | None,
     place_of_output(target.parent)
     options = " ".join(f"--set {key}={shlex.quote(str(value))}" for key, value in numbers.items())
     command = f"tyrefem new {kind} {shlex.quote(size)} {options}".rstrip()
-    text = section_text(drawn, command) if kind == "section" else study_text(drawn, reference, SPEED)
+    if kind == "section":
+        text = section_text(drawn, command)
+    else:
+        text = study_text(drawn, reference, SPEED, named_places(section))
     with results_file(target, (".toml",), force=force), atomic_path(target) as temporary:
         temporary.write_text(schema_line(kind, target) + text, encoding="utf-8")
     for warning in section.warnings:

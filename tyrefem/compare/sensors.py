@@ -49,9 +49,9 @@ def check_sensors(runs: Sequence[MeasuredRun], study: StudyLike) -> None:
     if len(unknown) == 1:
         (column,) = unknown
         wrong = f"column '{column}'{where} is no sensor of study '{study.name}'{nearest(column, allowed)}"
-        raise InputError(f"{wrong}; rename it, or ignore it", file=file)
+        raise InputError(f"{wrong}; rename it, ignore it, or add it to [sensors]", file=file)
     raise InputError(
         f"columns {quoted(unknown, allowed)}{where} are no sensors of study '{study.name}'; allowed: "
-        f"{', '.join(sorted(allowed))}; rename them, or ignore them",
+        f"{', '.join(sorted(allowed))}; rename them, ignore them, or add them to [sensors]",
         file=file,
     )

@@ -152,8 +152,9 @@ def _drop_exclusive(parts: list[str], place: dict[str, Any]) -> None:
     exclusive_keys = EXCLUSIVE_KEYS if parts[0] == "drive" else {}
     if parts[0] == "sensors":
         exclusive_keys = {
-            "at": ["s", "depth", "below_surface"],
-            "s": ["at"],
+            "at": ["s", "depth", "below_surface", "place"],
+            "place": ["s", "depth", "below_surface", "at"],
+            "s": ["at", "place"],
             "depth": ["at", "below_surface"],
             "below_surface": ["at", "depth"],
         }

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tyrefem.errors import InputError
+from tyrefem.geometry.named_places import named_place
 from tyrefem.inputs.study_card import Sensor
 
 if TYPE_CHECKING:
@@ -37,7 +38,7 @@ def sensor_places(
 
 
 def _together(sensors: Mapping[str, Sensor], section: Section) -> dict[str, tuple[float, float]] | None:
-    """The places of sensors that are all given by a station and are all in the rubber; None: not so."""
+    """The places of sensors that are all given by ``s`` and are all in the rubber; None: not so."""
     stations = [sensor.s for sensor in sensors.values()]
     if not stations or any(s is None for s in stations):
         return None
@@ -72,15 +73,34 @@ def sensor_place(sensor: Sensor, section: Section) -> tuple[float, float]:
                 f"{float(depth[0]) * 1e3:.1f} mm)"
             )
         return float(r), float(z)
-    assert sensor.s is not None
-    length = section.line.length
-    lowest = 0.0 if section.half else -length
-    if not lowest <= sensor.s <= length:
-        raise InputError(
-            f"s = {sensor.s * 1e3:.1f} mm is off the section; allowed: {lowest * 1e3:.1f} to {length * 1e3:.1f} mm"
-        )
-    r, z = section.place([sensor.s], [depth_of(sensor.s, sensor.depth, sensor.below_surface, section)])[0]
-    return float(r), float(z)
+    along, deep = station_and_depth(sensor, section)
+    place = section.place([along], [deep])[0]
+    return float(place[0]), float(place[1])
+
+
+def station_and_depth(sensor: Sensor, section: Section) -> tuple[float, float]:
+    """(s, depth) of a sensor in a section before wear, m: as stated, or of its ``place`` or of ``at``.
+
+    Raises
+    ------
+    InputError : ``s`` is off the section, or the wall is thinner there; the section has no such place.
+    """
+    if sensor.at is not None:
+        stations, depths = section.locate([sensor.at])
+        return float(stations[0]), float(depths[0])
+    if sensor.place is not None:
+        s, depth = named_place(section, sensor.place)
+        if sensor.depth is None and sensor.below_surface is None:
+            return s, depth
+    else:
+        assert sensor.s is not None
+        s, length = sensor.s, section.line.length
+        lowest = 0.0 if section.half else -length
+        if not lowest <= s <= length:
+            raise InputError(
+                f"s = {s * 1e3:.1f} mm is off the section; allowed: {lowest * 1e3:.1f} to {length * 1e3:.1f} mm"
+            )
+    return s, depth_of(s, sensor.depth, sensor.below_surface, section)
 
 
 def depth_of(s: float, depth: float | None, below_surface: float | None, section: Section) -> float:

@@ -17,6 +17,7 @@ from tyrefem.cards import Card, Temperature, Text
 from tyrefem.effects import Effect, EffectOf
 from tyrefem.errors import InputError, InputWarning, nearest
 from tyrefem.estimates.work import check_readings, smallest_tolerance
+from tyrefem.geometry.named_places import PlaceName
 from tyrefem.inputs.deviations import Deviation
 from tyrefem.inputs.drive import Drive
 from tyrefem.inputs.explore_choice import ExploreChoice
@@ -29,6 +30,8 @@ from tyrefem.quantity.pattern import quantity_schema, row_schema
 if TYPE_CHECKING:
     from tyrefem.geometry import Section
 
+#: Keys of a sensor that say where it is.
+PLACE_KEYS = ("place", "s", "depth", "below_surface", "at")
 Rows = tuple[tuple[float, float], ...]
 #: Names that tables, exported models and pages use beside those of the sensors.
 OUTPUTS = (
@@ -195,10 +198,12 @@ class Sensor(Card):
     """A thermocouple: ``s`` along the meridian from the crown and ``depth`` from the inner surface, or ``at = [r, z]``.
 
     ``below_surface``, instead of ``depth``: from the outer surface of the new tyre, in a groove from its bottom.
+    ``place``, instead of ``s``: a place that every section has (`named_place`); with a depth only its ``s``.
     ``lag``: first-order time constant. Standard deviations: ``noise`` of a reading, ``accuracy`` of the calibration,
     ``position_sd`` of the place, ``lag_sd`` of the lag (defaults: estimates for a hand-drilled thermocouple).
     """
 
+    place: PlaceName | None = None
     s: Annotated[float, Unit("m")] | None = None
     depth: Annotated[float, Unit("m", ge=0)] | None = None
     below_surface: Annotated[float, Unit("m", ge=0)] | None = None
@@ -212,10 +217,13 @@ class Sensor(Card):
     @model_validator(mode="after")
     def _one_place(self) -> Sensor:
         through = (self.depth is not None) + (self.below_surface is not None)
-        along = self.s is not None and through == 1 and self.at is None
-        alone = self.at is not None and self.s is None and through == 0
-        if not (along or alone):
-            raise InputError("give either 's' and 'depth', 's' and 'below_surface', or 'at = [r, z]'")
+        along = (self.s is not None) + (self.place is not None) + (self.at is not None)
+        allowed = (0,) if self.at is not None else (0, 1) if self.place is not None else (1,)
+        if along != 1 or through not in allowed:
+            raise InputError(
+                "give either 's' and 'depth', 's' and 'below_surface', 'at = [r, z]', or 'place', alone or with one of "
+                "the depths"
+            )
         return self
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from tyrefem.sizes.drawn import Drawn
@@ -23,8 +23,9 @@ def section_text(drawn: Drawn, command: str) -> str:
     return "\n".join([*_head(drawn, command), "", *table_lines(drawn.data), "", *_materials(drawn), ""])
 
 
-def study_text(drawn: Drawn, section: Mapping[str, Any] | str, speed: str) -> str:
-    """A study of a size: its section, its materials, its rated load and pressure, mechanics by finite elements."""
+def study_text(drawn: Drawn, section: Mapping[str, Any] | str, speed: str, places: Iterable[str]) -> str:
+    """A study of a size: its section, its materials, its rated load and pressure, mechanics by finite elements, and
+    sensors at places by name."""
     rules = drawn.rules
     lines = [
         f"title = {_value(f'{drawn.size.text}: rated load and pressure at {speed}')}",
@@ -48,6 +49,9 @@ def study_text(drawn: Drawn, section: Mapping[str, Any] | str, speed: str) -> st
         "[mechanics]",
         'strain = "fem"',
         'loss_convention = "sinusoid"',
+        "",
+        "[sensors]                   # places that every such tyre has, whatever its size; your own: docs/studies.md",
+        *(f"{name} = {_value({'place': name})}" for name in places),
         "",
     ]
     return "\n".join(lines)

@@ -20,6 +20,7 @@ from tyrefem.errors import InputError
 from tyrefem.geometry import Section
 from tyrefem.inputs.loading import LoadCase
 from tyrefem.inputs.study import StudyData
+from tyrefem.inputs.study_card import PLACE_KEYS
 from tyrefem.mechanics.cycle_schedule import CycleSchedule, cycle_schedule
 from tyrefem.mechanics.strain_cycle import StrainCycle, Zone
 from tyrefem.simulation.rolling_tyre import RollingTyre
@@ -155,7 +156,7 @@ class OtherModel:
         section = study.replace({"sensors": {}, "effects": []} | scale).section
         places: dict[str, Any] = {}
         for name in study.sensors:
-            written = {key: value for key, value in study.data["sensors"][name].items() if key != "at"}
+            written = {key: value for key, value in study.data["sensors"][name].items() if key not in PLACE_KEYS}
             s, depth = _place(study, name)
             inside = min(depth, float(section.rubber_thickness([s])[0]) - COVER)
             places[f"sensors.{name}"] = written | {"s": f"{s!r} m", "depth": f"{inside!r} m"}

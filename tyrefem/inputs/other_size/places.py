@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from tyrefem.geometry import Section
-from tyrefem.inputs.sensor_places import depth_of
-from tyrefem.inputs.study_card import Sensor
+from tyrefem.inputs.sensor_places import station_and_depth
+from tyrefem.inputs.study_card import PLACE_KEYS, Sensor
 
 #: A sensor stays this far from a groove, m.
 BESIDE = 1e-3
@@ -67,14 +67,12 @@ def same_depth(old: Section, new: Section, s: float, depth: float) -> tuple[floa
 def carried(sensor: Sensor, data: dict[str, Any], old: Section, new: Section) -> dict[str, Any]:
     """A sensor's table for another section. ``data``: as written; its other keys stay.
 
-    A sensor below the surface stays as deep below it if the wall is that thick, else goes to the middle.
+    A sensor below the surface stays as deep below it if the wall is that thick, else goes to the middle. One at a place
+    by name alone stays there.
     """
-    if sensor.at is not None:
-        stations, depths = old.locate([sensor.at])
-        s, depth = float(stations[0]), float(depths[0])
-    else:
-        assert sensor.s is not None
-        s, depth = sensor.s, depth_of(sensor.s, sensor.depth, sensor.below_surface, old)
+    if sensor.place is not None and sensor.depth is None and sensor.below_surface is None:
+        return data
+    s, depth = station_and_depth(sensor, old)
     station, deep = same_depth(old, new, s, depth)
     if not old.in_groove(s):
         station = _beside_grooves(new, station)
@@ -85,7 +83,7 @@ def carried(sensor: Sensor, data: dict[str, Any], old: Section, new: Section) ->
         place["below_surface"] = data["below_surface"] if sensor.below_surface <= wall else _millimetres(wall / 2, 3)
     else:
         place["depth"] = _millimetres(min(deep, wall), 3)
-    return {**place, **{key: value for key, value in data.items() if key not in ("s", "depth", "below_surface", "at")}}
+    return {**place, **{key: value for key, value in data.items() if key not in PLACE_KEYS}}
 
 
 def _beside_grooves(section: Section, s: float) -> float:
