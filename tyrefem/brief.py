@@ -15,6 +15,15 @@ SHOWN = 6
 _INDENT = "  "
 
 
+def counted(number: int, noun: str) -> str:
+    """A number of things in words.
+
+    >>> counted(1, "run"), counted(1200, "reading")
+    ('1 run', '1,200 readings')
+    """
+    return f"{number:,} {noun}{'' if number == 1 else 's'}"
+
+
 class Brief:
     """A class whose `repr` has at most 20 lines; a subclass gives its main facts in `_facts`.
 

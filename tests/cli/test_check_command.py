@@ -19,9 +19,9 @@ GOOD = {
     "studies/nasa-taxi-takeoff/study.toml": "a study of ",
     "studies/nasa-taxi-takeoff": "a study of ",
     "studies/nasa-campaign": "a campaign of 19 cases",
-    "studies/nasa-campaign/cases.csv": "a table of 19 case(s)",
-    "studies/example-validation": "3 measured run(s)",
-    "studies/example-validation/run-1.csv": "a measured table, 1 run(s), ",
+    "studies/nasa-campaign/cases.csv": "a table of 19 cases",
+    "studies/example-validation": "3 measured runs",
+    "studies/example-validation/run-1.csv": "a measured table, 1 run, ",
 }
 
 
@@ -42,9 +42,9 @@ def test_every_shipped_card_is_good(capfd: pytest.CaptureFixture[str]) -> None:
 @pytest.mark.parametrize(
     ("table", "words"),
     [
-        ("name,Lab 3\ntime [s],crown [degC]\n0,25\n", "a measured table, 1 run(s), 1 readings of crown"),
-        ("name,Lab 3\n\ntime;crown [degC]\n2024-05-01T12:30:01;25\n", "a measured table, 1 run(s)"),
-        ('"name","drive.load [lbf]","note"\n"t","1","time"\n', "a table of 1 case(s)"),
+        ("name,Lab 3\ntime [s],crown [degC]\n0,25\n", "a measured table, 1 run, 1 reading of crown"),
+        ("name,Lab 3\n\ntime;crown [degC]\n2024-05-01T12:30:01;25\n", "a measured table, 1 run"),
+        ('"name","drive.load [lbf]","note"\n"t","1","time"\n', "a table of 1 case"),
     ],
 )
 def test_a_loggers_table_is_no_table_of_cases(
@@ -97,7 +97,7 @@ def test_missing_file_empty_folder_and_a_link_to_nowhere(here: Path, refused: Ca
 @pytest.mark.parametrize(
     ("name", "words"),
     [
-        ("nasa-22x5.5-8pr", "a study of 1 phase(s), 600 s"),
+        ("nasa-22x5.5-8pr", "a study of 1 phase, 600 s"),
         ("crown-angle", "a sweep: 100 variants"),
         ("nasa-tread", "a material card, Tread rubber"),
     ],

@@ -115,7 +115,7 @@ def test_columns_named_otherwise_in_measured_entries(
     ]
     table.write_text("\n".join(rows), encoding="utf-8")
     assert main(["check", file]) == 0
-    assert "3 measured run(s)" in capfd.readouterr().out
+    assert "3 measured runs" in capfd.readouterr().out
 
 
 def test_a_mark_of_utf_8_before_a_card(here: Path, capfd: pytest.CaptureFixture[str]) -> None:

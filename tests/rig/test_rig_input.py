@@ -96,7 +96,7 @@ def test_bad_table(table: str, options: list[str], words: str, here: Path, capfd
 
 def test_a_card_can_be_checked_without_running(here: Path, capfd: pytest.CaptureFixture[str]) -> None:
     assert main(["check", str(find("trtlab").parent)]) == 0
-    assert "a laser rig, 2 layer(s), 3 sensors, 2 run(s)" in capfd.readouterr().out
+    assert "a laser rig, 2 layers, 3 sensors, 2 runs" in capfd.readouterr().out
     (here / "rig.toml").write_text(CARD.replace('idle = "60 s"', 'idle = "60"'), encoding="utf-8")
     assert main(["check", "rig.toml"]) == 2
     assert "rig.toml: phases.idle: '60' has no unit" in capfd.readouterr().err

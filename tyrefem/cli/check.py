@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from tyrefem.brief import counted
 from tyrefem.cli.common import fail, warn
 from tyrefem.cli.progress import progress
 from tyrefem.cli.shell import answer_with, say
@@ -83,13 +84,17 @@ def _table(path: Path) -> str:
 
     if looks_like_cases(path):
         cases = read_cases(path)
-        return f"a table of {len(cases)} case(s); to check their values, run 'tyrefem check' on the study that names it"
+        number = counted(len(cases), "case")
+        return f"a table of {number}; to check their values, run 'tyrefem check' on the study that names it"
     runs = read_table(path)
     sensors = sorted({sensor for run in runs for sensor in run.sensors})
     readings = sum(int(run.temperatures.notna().sum().sum()) for run in runs)
     channels = dict.fromkeys(heading for run in runs for heading in run.channels)
     left_out = f"; no temperatures, left out: {', '.join(channels)}" if channels else ""
-    return f"a measured table, {len(runs)} run(s), {readings} readings of {', '.join(sensors)}{left_out}"
+    return (
+        f"a measured table, {counted(len(runs), 'run')}, {counted(readings, 'reading')} of {', '.join(sensors)}"
+        f"{left_out}"
+    )
 
 
 def _card(path: Path) -> str:
@@ -103,13 +108,16 @@ def _card(path: Path) -> str:
 
         rig = RigCard.check(data, path)
         warn(warning.within(file=path) for warning in rig.warnings())
-        words = f"a laser rig, {len(rig.layers)} layer(s), {len(rig.sensors)} sensors, {len(rig.runs)} run(s)"
-        return f"{words}, {_rig_tables(rig, path)}"
+        parts = {"layer": rig.layers, "sensor": rig.sensors, "run": rig.runs}
+        words = ", ".join(counted(len(part), noun) for noun, part in parts.items())
+        return f"a laser rig, {words}, {_rig_tables(rig, path)}"
     if "bodies" in data and "films" in data:
         from tyrefem.lumped.card import ThermalCard
 
         thermal = ThermalCard.check(data, path)
-        return f"a thermal card of {len(thermal.bodies)} bodies, {len(thermal.films)} films, {len(thermal.runs)} run(s)"
+        bodies = f"{len(thermal.bodies)} bod{'y' if len(thermal.bodies) == 1 else 'ies'}"
+        films, runs = counted(len(thermal.films), "film"), counted(len(thermal.runs), "run")
+        return f"a thermal card of {bodies}, {films}, {runs}"
     if isinstance(data.get("study"), str):
         from tyrefem.sweep.design import loaded
 
@@ -141,12 +149,12 @@ def _card(path: Path) -> str:
             study_of_case = campaign.case_study(case)
             check_study(study_of_case)
             warned += warn(study_of_case.warnings, warned)
-        return f"a campaign of {len(campaign.cases)} cases"
+        return f"a campaign of {counted(len(campaign.cases), 'case')}"
     tables = check_study(checked)
     warn(checked.warnings)
     return (
-        f"a study of {len(checked.card.drive.phases)} phase(s), {checked.card.drive.end:g} s, "
-        f"{len(checked.sensors)} sensors, {tables} measured run(s)"
+        f"a study of {counted(len(checked.card.drive.phases), 'phase')}, {checked.card.drive.end:g} s, "
+        f"{counted(len(checked.sensors), 'sensor')}, {counted(tables, 'measured run')}"
     )
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from tyrefem.brief import Brief
+from tyrefem.brief import Brief, counted
 from tyrefem.compare.history import ALL, SensorHistory
 from tyrefem.compare.uncertainty import COLUMNS, row
 from tyrefem.output import jsonable
@@ -63,7 +63,7 @@ class ComparisonData(Brief):
         all_phases = self.table[self.table["phase"] == ALL]
         return {
             "runs": runs,
-            "readings": f"{len(self.residuals):,} of {_plural(len(self.by_sensor), 'sensor')}",
+            "readings": f"{len(self.residuals):,} of {counted(len(self.by_sensor), 'sensor')}",
             "computed - measured": f"{self.bias_K:+.2f} K on average, {self.rms_K:.2f} K rms",
             "rms by sensor": worst,
             "beyond uncertainty": f"{int(all_phases['beyond'].sum())} of {len(all_phases)} sensor histories "
@@ -113,7 +113,7 @@ class ComparisonData(Brief):
     def summary(self) -> str:
         """One line: overall deviation, worst sensor, and number of histories beyond the uncertainty."""
         runs, sensors = self.residuals["run"].nunique(), self.residuals["sensor"].nunique()
-        count = f"{_plural(runs, 'run')}, {_plural(sensors, 'sensor')}, {_plural(len(self.residuals), 'reading')}"
+        count = f"{counted(runs, 'run')}, {counted(sensors, 'sensor')}, {counted(len(self.residuals), 'reading')}"
         overall = f"computed - measured {self.bias_K:+.2f} K on average, {self.rms_K:.2f} K rms"
         fitted, held = self.part(hold_out=False), self.part(hold_out=True)
         if len(held):
@@ -216,7 +216,3 @@ def comparison_of(
 
 def _rms(residuals: pd.DataFrame) -> float:
     return math.sqrt(float((residuals["error_K"] ** 2).mean()))
-
-
-def _plural(number: int, noun: str) -> str:
-    return f"{number:,} {noun}{'' if number == 1 else 's'}"

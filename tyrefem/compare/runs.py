@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from tyrefem.brief import counted
 from tyrefem.compare.interface import Computed, arrays_of, computed_from, computed_of
 from tyrefem.compare.packed_drive import PackedDrive, Work, same_tyre, solve_cycles
 from tyrefem.errors import InputError
@@ -117,7 +118,7 @@ class Runs:
     def workload(self, *, model: bool) -> str:
         """The number of simulations as text. ``model``: a reduced model is tried."""
         drives, changed = len(self.drives), self.changed
-        parts = [f"{drives} drive{'' if drives == 1 else 's'} as driven"]
+        parts = [f"{counted(drives, 'drive')} as driven"]
         if changed:
             fewer = ", fewer if a reduced model holds" if model else ""
             parts.append(f"{len(changed)} with one uncertain input changed{fewer}")
@@ -129,7 +130,7 @@ class Runs:
         kept = len(self.computed) or sum(self._is_kept(key) for key in changed)
         if kept:
             parts.append(f"{kept} are reused from an interrupted comparison")
-        return f"{len(self.studies)} simulations: {'; '.join(parts)}"
+        return f"{counted(len(self.studies), 'simulation')}: {'; '.join(parts)}"
 
     @property
     def cost(self) -> list[str]:

@@ -8,6 +8,7 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from tyrefem.brief import counted
 from tyrefem.inputs.study_plugins import plugin_summary
 from tyrefem.output import atomic_path, versions, write_json
 from tyrefem.reports.sweep import FILES as LIST
@@ -197,7 +198,7 @@ def computation_sentence(sweep: Sweep) -> str:
     if certificate is not None:
         words += (
             f"; {sweep.reduced} by a reduced model from {certificate.trained_on - certificate.amended} runs"
-            f" and {certificate.amended} correction{'' if certificate.amended == 1 else 's'},"
+            f" and {counted(certificate.amended, 'correction')},"
             f" within {certificate.error:.2g} K of {certificate.cases} fresh full runs"
         )
     elif sweep.outcomes:

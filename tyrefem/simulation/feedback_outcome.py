@@ -6,6 +6,8 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
+from tyrefem.brief import counted
+
 
 @dataclass(frozen=True)
 class InflationState:
@@ -66,7 +68,7 @@ class FeedbackOutcome:
         """One line of text."""
         change = f"{self.changes[-1]:.2g} K"
         state = f"converged to {change}" if self.converged else f"NOT converged: {change}"
-        runs = f"{self.iterations} run{'' if self.iterations == 1 else 's'}"
+        runs = counted(self.iterations, "run")
         if math.isinf(self.changes[-1]):
             state = "interrupted before the end of the drive"
         return f"{self.start} at the start, {self.end} at the end; {runs}, {state}"

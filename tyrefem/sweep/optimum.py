@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Unpack
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.brief import counted
 from tyrefem.sweep.evaluation import Evaluator
 from tyrefem.sweep.sweep import Sweep
 from tyrefem.variants.answer_units import difference_unit, name_of, shown
@@ -221,7 +222,7 @@ class Optimum:
             f"{'Smallest' if self.card.minimise else 'Largest'} {name_of(self.answer)}{limits and f' with {limits}'}"
         )
         failed = len(self.swept.failed)
-        count = f"{self.evaluated} different variant{'' if self.evaluated == 1 else 's'} evaluated"
+        count = f"{counted(self.evaluated, 'different variant')} evaluated"
         tried = count + (f", {failed} failed" if failed else "")
         if self.best is None:
             return [f"{heading}: no variant keeps the limits ({tried})."]
