@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import itertools
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
@@ -120,6 +121,8 @@ def tyre_forces(
 ) -> TyreForces:
     """Roll a study's tyre at every load: over the slips straight ahead, over the slip angles at every camber.
 
+    A tyre that its load changes (`WheelOnRoad.of_one_load`) is pressed under each load.
+
     Without camber a half section needs one sign of the slip angle: the tyre is its own mirror image. With camber the
     angles of both signs are computed.
 
@@ -153,29 +156,36 @@ def tyre_forces(
     if phase.load is not None and min(loads) <= phase.load.start <= max(loads):
         nominal = phase.load.start
     on_road = wheel_on_road(study, load=nominal, **wheel)
-    rows: list[dict[str, float]] = []
-    pairs = [(camber, load) for camber in dict.fromkeys((0.0, *cambers)) for load in loads]
-    for done, (camber, load) in enumerate(pairs):
-        if progress is not None:
-            progress(done, len(pairs))
-        leaning = replace(on_road.rolling, camber=camber, influence=on_road.rolling.points)
-        wheel_under = replace(on_road, rolling=leaning, load=load, deflection=None)
-        free = wheel_under.free(harmonics)
-        angles = slip_angles[::THINNED] if camber else slip_angles
-        for states, steered in _curves(wheel_under, angles, () if camber else slips, free):
-            rows += [row(wheel_under, state) | {"camber_rad": camber, "free": float(steered)} for state in states]
-    return TyreForces(on_road, tuple(rows))
+    angles = sorted({abs(angle) for angle in slip_angles})
+    leans = tuple(dict.fromkeys((0.0, *cambers)))
+    curves: dict[tuple[float, float], list[dict[str, float]]] = {}
+    for load in dict.fromkeys(loads):
+        tyre = wheel_on_road(study, load=load, **wheel) if load != nominal and on_road.of_one_load else on_road
+        for camber in leans:
+            if progress is not None:
+                progress(len(curves), len(leans) * len(set(loads)))
+            leaning = replace(tyre.rolling, camber=camber, influence=tyre.rolling.points)
+            wheel_under = replace(tyre, rolling=leaning, load=load, deflection=None)
+            steered_by = angles[::THINNED] if camber else angles
+            states = _curves(wheel_under, steered_by, () if camber else slips, wheel_under.free(harmonics))
+            curves[camber, load] = [
+                row(wheel_under, state) | {"camber_rad": camber, "free": float(steered)}
+                for some, steered in states
+                for state in some
+            ]
+    ordered = [curves[camber, load] for camber in leans for load in dict.fromkeys(loads)]
+    return TyreForces(on_road, tuple(itertools.chain.from_iterable(ordered)))
 
 
 def _curves(
     wheel: WheelOnRoad, slip_angles: Sequence[float], slips: Sequence[float], free: RolledTyre
 ) -> Iterator[tuple[list[RolledTyre], bool]]:
-    """Rolling tyres over slip angles of one sign after the other, True; then over braking and driving slips, False.
-    Each tyre is found from the one before, the first from free rolling."""
+    """Rolling tyres over slip angles >= 0, then over their mirror images, True; then over braking and driving slips,
+    False. Each tyre is found from the one before, the first from free rolling."""
     mirrors = wheel.pressed.study.section.half and not wheel.rolling.camber
     for sign in (1.0,) if mirrors else (1.0, -1.0):
-        angles = sorted({abs(angle) for angle in slip_angles} - ({0.0} if sign < 0 else set()))
-        motions = [(RollingMotion(sign * angle), driven(None, None, None)) for angle in angles]
+        angles = [sign * angle for angle in slip_angles if angle or sign > 0]
+        motions = [(RollingMotion(angle), driven(None, None, None)) for angle in angles]
         yield swept(wheel, motions, free.harmonics), True
     for some in ([slip for slip in slips if slip < 0], [slip for slip in slips if slip > 0]):
         ordered = sorted(some, key=abs)

@@ -68,6 +68,13 @@ class WheelOnRoad(Brief):
     speed: float
     _free: dict[int, RolledTyre] = field(default_factory=dict, init=False, repr=False)
 
+    @property
+    def of_one_load(self) -> bool:
+        """True if another load needs another tyre: pressed in large motion, moduli at the strains of the load, or a
+        tyre that turns."""
+        pressed = self.pressed
+        return pressed.balanced or pressed.moduli is not None or pressed.turning is not None
+
     def free(self, harmonics: int) -> RolledTyre:
         """Straight ahead without torque: its travel per radian is the effective rolling radius."""
         if harmonics not in self._free:
