@@ -58,6 +58,14 @@ def test_distance_does_not_depend_on_speed_or_duration_at_a_given_temperature(at
     np.testing.assert_allclose(other.km[inside], at_60.km[inside], rtol=1e-9)
 
 
+def test_kilometres_are_those_of_the_road(at_60: LifeData) -> None:
+    """A wheel that brakes with 20 % of slip turns 20 % less often on the same way."""
+    braked = life(tyre(drive__slip_ratio=0.2, boundaries__sliding="constant"), temperature=60.0)
+    assert braked.distance == pytest.approx(at_60.distance, rel=1e-9)
+    inside = np.isfinite(at_60.km)
+    np.testing.assert_allclose(braked.km[inside], at_60.km[inside] / 0.8, rtol=1e-6)
+
+
 def test_miners_sum_of_two_loads() -> None:
     """1/L of a drive of two phases is the mean of both 1/L by distance, on the plane of the worse sum."""
     light, heavy = ({"name": name, "duration": "60 s", "load": load} for name, load in (("a", "6 kN"), ("b", "9 kN")))

@@ -54,6 +54,8 @@ def test_free_rolling_has_no_force_to_speak_of(free: RolledTyre) -> None:
     assert np.abs(free.force[:2]).max() < 1e-3 * LOAD
     assert free.sliding_share < 0.1
     assert free.loaded_radius < free.travel < free.reach
+    # Rounding over rounding is no trail.
+    assert math.isnan(free.pneumatic_trail)
 
 
 def test_signs_are_those_of_iso_8855(rolling: SteadyRolling, free: RolledTyre) -> None:

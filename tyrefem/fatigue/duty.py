@@ -85,8 +85,8 @@ class Duty:
         return np.asarray((self.times[1:] + self.times[:-1]) / 2)
 
     def distance(self) -> float:
-        """Distance that the tyre rolls in the drive, m."""
-        speeds = np.array([self.schedule.motion(float(t)).rolling_speed for t in self._middles])
+        """Distance that the wheel travels over the road in the drive, m; with slip it turns less or more often."""
+        speeds = np.array([self.schedule.motion(float(t)).speed for t in self._middles])
         return float((speeds * np.diff(self.times)).sum())
 
     def revolutions(self) -> dict[tuple[int, int], Array]:

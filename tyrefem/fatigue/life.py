@@ -46,7 +46,7 @@ class LifeData(Brief):
     ----------
     study : the study. rings : the undeformed section's elements. regions : names of the regions with a life.
     left_out : regions whose card has no ``[fatigue]``. temperature : degC that was given; None: those of a run.
-    plateau : each phase at its last temperatures. distance : m rolled in one drive.
+    plateau : each phase at its last temperatures. distance : m over the road in one drive.
     km : (e, q) distance to failure. normals : (e, q, 3) of the critical plane, in (r, z, t) of the inflated tyre.
     temperatures : (e, q) degC, mean over the drive as it counts for the growth.
     peak, valley, stretch, opening, drift : (e, q) of the load case that does most on that plane, as in `PlaneCycle`.

@@ -22,6 +22,8 @@ from tyrefem.mechanics.rolling.section_fields import SectionFields, force_waves
 Array = NDArray[np.float64]
 #: The wheel's torque of a force f at a place p of (x forward, y down, z left) is f . (TORQUE p), N m.
 TORQUE = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
+#: A side force below this share of the load is the rounding of a tyre that has none.
+ROUNDING = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,8 +113,9 @@ class RolledTyre(Brief):
 
     @property
     def pneumatic_trail(self) -> float:
-        """-M_z/F_y, m: how far behind the contact centre the side force acts; nan without side force."""
-        return float(-self.moment[2] / self.force[1]) if self.force[1] else math.nan
+        """-M_z/F_y, m: how far behind the contact centre the side force acts; nan where there is none, but rounding."""
+        _, side, load = self.force
+        return float(-self.moment[2] / side) if abs(side) > ROUNDING * load else math.nan
 
     @property
     def sliding_share(self) -> float:
