@@ -76,6 +76,29 @@ def test_residual_moment_of_camber_rises_with_pressure_and_has_its_square():
     assert moments == pytest.approx(expected, rel=1e-9)
 
 
+def test_the_trail_is_the_lever_of_the_force_without_camber():
+    """Pacejka 2012, 4.E32. With the whole force a file was read with 10 % of the largest moment too little or much."""
+    bare = {"PCY1": 1.3, "PDY1": 1.0, "PKY1": -20.0, "PKY2": 1.5, "PKY4": 2.0, "PKY6": -0.9, "PKY3": 0.5, "QBZ10": 1.0}
+    tyre = MagicFormula(bare | {"QDZ1": 0.1, "QCZ1": 1.2, "QBZ1": 9.0}, 4000.0, 2.2e5, 0.31)
+    assert tyre.lateral_force(5000.0, 0.0, 0.05) < -100.0
+    assert tyre.aligning_moment(5000.0, 0.0, 0.05) == 0.0
+    angles = np.array([-0.06, 0.02])
+    expected = -tyre.trail(5000.0, angles, 0.05) * tyre.lateral_force(5000.0, angles)
+    assert tyre.aligning_moment(5000.0, angles, 0.05) == pytest.approx(expected, rel=1e-12)
+
+
+def test_every_program_reads_the_same_trail_with_camber():
+    """QDZ3 goes with the camber or with its size, as a program takes it; the fit has its square, QDZ4."""
+    tyre = MagicFormula(KNOWN | {"QDZ3": -2.0}, 4000.0, 2.2e5, 0.31)
+    points = curves(cambers=np.radians([0.0, -3.0]))
+    aligning = tyre.aligning_moment(points.load, points.slip_angle, points.camber)
+    columns = {name: getattr(points, name) for name in ForcePoints.__annotations__} | {"aligning": aligning}
+    fit = fit_magic_formula(ForcePoints.of(columns), 0.31, nominal_load=4000.0)
+    assert fit.errors["aligning"] < 1e-3
+    assert fit.formula.coefficients.get("QDZ3", 0.0) == 0.0
+    assert fit.formula.coefficients["QDZ4"] == pytest.approx(-2.0 / np.radians(3.0), rel=0.05)
+
+
 def test_a_tir_file_of_camber_squared_is_read(tmp_path):
     path = tmp_path / "tyre.tir"
     path.write_text("FITTYP = 61\nFNOMIN = 4000\nNOMPRES = 2.2e5\nUNLOADED_RADIUS = 0.31\nQDZ10 = 0.2\nQDZ11 = 0.1\n")

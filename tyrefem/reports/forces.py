@@ -47,7 +47,7 @@ def write_files(forces: TyreForces, folder: Path, *, pictures: bool = True) -> N
         f"pure slip; {MOTIONS[forces.wheel.pressed.footprint.motion]}, {_dynamics(forces)}",
     )
     with atomic_folder(folder) as place:
-        forces.table.to_csv(place / "forces.csv", index=False, float_format="%.9g", lineterminator="\n")
+        forces.table.to_csv(place / "forces.csv", index=False, float_format="%.9g", na_rep="nan", lineterminator="\n")
         write_json(summary(forces), place / "forces.json")
         text = tir_text(forces.fit, forces.dimensions, study.title, notes)
         (place / "tyre.tir").write_text(text, encoding="utf-8")

@@ -144,4 +144,4 @@ def write_curve(curve: SlipCurve, folder: Path, *, pictures: bool = True) -> Non
 
 
 def _csv(table: Any, path: Path) -> None:
-    table.to_csv(path, index=False, float_format="%.9g", lineterminator="\n")
+    table.to_csv(path, index=False, float_format="%.9g", na_rep="nan", lineterminator="\n")

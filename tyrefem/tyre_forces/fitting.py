@@ -34,9 +34,10 @@ ALIGNING = {1: "QBZ1 QCZ1 QDZ1 QEZ1", 2: "QBZ2 QDZ2 QEZ2", 3: "QBZ3 QEZ3"}
 LONGITUDINAL_ODD = {1: "PEX4 PHX1 PVX1", 2: "PHX2 PVX2"}
 LATERAL_ODD = {1: "PEY3 PHY1 PVY1", 2: "PHY2 PVY2"}
 ALIGNING_ODD = {1: "QHZ1 QDZ6 QEZ4", 2: "QHZ2 QDZ7"}
-#: Coefficients of the camber, where several cambers are given.
+#: Coefficients of the camber, where several cambers are given. The trail changes with its square: programs read QDZ3
+#: with |camber| (Pacejka 2012, 4.E43) or with its sign (Besselink et al. 2010, A60).
 LATERAL_CAMBER = {1: "PDY3 PKY3 PKY6 PVY3", 2: "PKY7 PVY4"}
-ALIGNING_CAMBER = {1: "QBZ5 QDZ3 QDZ8 QHZ3", 2: "QDZ9 QHZ4"}
+ALIGNING_CAMBER = {1: "QBZ5 QDZ4 QDZ8 QHZ3", 2: "QDZ9 QHZ4"}
 #: Coefficients of the pressure, where several pressures are given.
 LONGITUDINAL_PRESSURE, LATERAL_PRESSURE, ALIGNING_PRESSURE = "PPX1 PPX3", "PPY1 PPY2 PPY3", "PPZ1"
 #: Coefficients that must not be zero, fitted or not; the stiffness, whose first value the points give.
@@ -48,7 +49,7 @@ NEEDED = {
 #: Different slips, both signs alike, that a kind of coefficient needs: slope, peak, shape, curvature. Those of the
 #: camber need slips of cambered points.
 SLIPS = {"PD": 2, "QB": 2, "PC": 3, "QC": 3, "PE": 4, "QE": 4}
-CAMBERED_SLIPS = {"PKY3": 1, "QDZ3": 1, "PDY3": 3, "QBZ5": 3}
+CAMBERED_SLIPS = {"PKY3": 1, "QDZ4": 1, "PDY3": 3, "QBZ5": 3}
 SLOPE = {"longitudinal": "PKX1", "lateral": "PKY1"}
 #: Fewest points of a fit.
 FEWEST = 4

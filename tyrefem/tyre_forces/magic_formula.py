@@ -32,7 +32,7 @@ class MagicFormula(Brief):
     """Pure slip by the Magic Formula 6.1 (Pacejka 2012, equations 4.E9 to 4.E49), without scaling factors.
 
     F = D sin(C arctan(B x - E (B x - arctan B x))) + S_V, x = slip or angle + S_H, B = K / (C D);
-    M_z = -t F_y + M_r, trail t = D_t cos(C_t arctan(B_t x - E_t (B_t x - arctan B_t x))).
+    M_z = -t F_y(camber 0) + M_r, trail t = D_t cos(C_t arctan(B_t x - E_t (B_t x - arctan B_t x))).
 
     Axes and signs are those of `ForcePoints` (ISO-W): the cornering stiffness K_y is negative.
 
@@ -116,7 +116,7 @@ class MagicFormula(Brief):
         return self._lateral(load, slip_angle, camber, pressure)[0]
 
     def trail(self, load: Any, slip_angle: Any, camber: Any = 0.0, pressure: Any = None) -> Any:
-        """Pneumatic trail t, m: M_z = -t F_y + M_r."""
+        """Pneumatic trail t, m: M_z = -t F_y + M_r, F_y without camber."""
         q, (dfz, dpi) = self._known, self._relative(load, pressure)
         load, camber = np.asarray(load, dtype=float), np.asarray(camber, dtype=float)
         x = np.asarray(slip_angle) + q["QHZ1"] + q["QHZ2"] * dfz + (q["QHZ3"] + q["QHZ4"] * dfz) * camber
@@ -131,17 +131,21 @@ class MagicFormula(Brief):
         return size * np.cos(q["QCZ1"] * np.arctan(angle - bend * (angle - np.arctan(angle)))) * np.cos(slip_angle)
 
     def aligning_moment(self, load: Any, slip_angle: Any, camber: Any = 0.0, pressure: Any = None) -> Any:
-        """M_z, N m, at zero slip."""
+        """M_z, N m, at zero slip.
+
+        The trail is the lever of the force without camber (4.E32): what camber adds to the force has the residual M_r.
+        """
         q, (dfz, dpi) = self._known, self._relative(load, pressure)
         load, camber = np.asarray(load, dtype=float), np.asarray(camber, dtype=float)
-        force, across, up, slope = self._lateral(load, slip_angle, camber, pressure)
+        _, across, up, slope = self._lateral(load, slip_angle, camber, pressure)
+        upright = self.lateral_force(load, slip_angle, 0.0, pressure)
         stiffness = self.cornering_stiffness(load, camber, pressure)
         x = np.asarray(slip_angle) + across + up / (stiffness + np.copysign(TINY, stiffness))
         by_camber = (q["QDZ8"] + q["QDZ9"] * dfz) * (1 + q["PPZ2"] * dpi)
         by_camber = by_camber + (q["QDZ10"] + q["QDZ11"] * dfz) * np.abs(camber)
         size = q["QDZ6"] + q["QDZ7"] * dfz + by_camber * camber
         residual = load * self.radius * size * np.cos(np.arctan((q["QBZ9"] + q["QBZ10"] * slope) * x))
-        return -self.trail(load, slip_angle, camber, pressure) * force + residual * np.cos(slip_angle)
+        return -self.trail(load, slip_angle, camber, pressure) * upright + residual * np.cos(slip_angle)
 
 
 def _magic(x: Any, stiffness: Any, shape: Any, peak: Any, bend: Any) -> Any:
