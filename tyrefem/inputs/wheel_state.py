@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -42,10 +43,12 @@ def wheel_state(phase: Phase, fraction: float) -> WheelState:
     """
     motion = motion_in(phase, fraction)
     given = phase.slip_ratio is not None or phase.slip_speed is not None
+    # A slip ratio holds as the wheel comes to rest, and is the same at every speed to the last bit.
+    ratio = motion.slip_ratio if phase.slip_ratio is None else phase.slip_ratio.at(fraction)
     return WheelState(
         motion.slip_angle,
         0.0 if phase.camber is None else phase.camber.at(fraction),
-        -motion.slip_ratio if given else None,
+        -ratio if given else None,
         None if phase.torque is None else phase.torque.at(fraction),
-        motion.rolling_speed / motion.speed if motion.speed > 0 else 1.0,
+        math.cos(motion.slip_angle) * (1 - ratio),
     )
