@@ -286,6 +286,19 @@ def test_names_in_tables_stay_as_they_were_written(tmp_path: Path) -> None:
     assert Record(tmp_path, "run", True).table("plain")["a"].tolist() == [1, 2]
 
 
+def test_the_tables_of_a_simulated_rig_are_read_below_their_remarks(tmp_path: Path) -> None:
+    from tyrefem.cli import main
+
+    assert (
+        main(["rig", "simulate", "trtlab", "--every", "60 s", "--seed", "1", "--out", str(tmp_path / "rig"), "-q"]) == 0
+    )
+    record = tf.load(tmp_path / "rig")
+    assert isinstance(record, Record)
+    table = record.table("high")
+    assert list(table) == ["time [s]", "outer [degC]", "inner [degC]", "interface [degC]"]
+    assert table["outer [degC]"].max() > 100 and table["time [s]"].iloc[0] == 0
+
+
 def test_a_loaded_diagnosis_names_every_effect(tmp_path: Path) -> None:
     offsets = [
         {"name": "sensor-offset", "variant": {"sensor": sensor}, "runs": None, "probability": share}

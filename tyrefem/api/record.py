@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import itertools
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -123,8 +124,10 @@ def _read_table(file: Path) -> pd.DataFrame:
 
     if file.suffix == ".parquet":
         return pd.read_parquet(file)
-    texts = pd.read_csv(file, usecols=lambda column: column in TEXTS, dtype=str, keep_default_na=False)
-    return pd.read_csv(file).assign(**texts)
+    with open(file, encoding="utf-8") as stream:
+        above = sum(1 for _ in itertools.takewhile(lambda line: line.startswith("#"), stream))
+    texts = pd.read_csv(file, usecols=lambda column: column in TEXTS, dtype=str, keep_default_na=False, skiprows=above)
+    return pd.read_csv(file, skiprows=above).assign(**texts)
 
 
 def read_json(file: Path) -> dict[str, Any]:
