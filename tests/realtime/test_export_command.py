@@ -57,6 +57,14 @@ def test_the_box_without_being_asked():
         box_of(study.replace({"drive.deflection": "1 in"}))
 
 
+@pytest.mark.parametrize("drive", [{}, {"drive.camber": "2 deg"}, {"drive.torque": "-100 N m"}])
+def test_the_friction_of_a_rolling_tyre_is_refused_before_any_work(drive, tmp_path):
+    changes = {"mesh.section": "full", "mechanics.motion": "linear", "boundaries.sliding": "rolling"}
+    study = tyrefem.study("passenger-205-55r16", changes | drive)
+    with pytest.raises(InputError, match="no friction of a rolling tyre"):
+        export(study, tmp_path / "tyre.npz")
+
+
 def test_effects_on_the_heat_are_refused(tmp_path):
     study = tyrefem.study(STUDY, {"mesh.size": "12 mm", "effects": [{"name": "standing-wave", "gain": 1.0}]})
     with pytest.raises(InputError, match="effects"):
