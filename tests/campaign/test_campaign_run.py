@@ -125,6 +125,22 @@ def test_page_stands_alone_and_names_the_failed(campaign: CampaignData, folder: 
     assert table["failure"][2].split(":")[-1].strip() in page.replace("&#39;", "'").replace("&#34;", '"')
 
 
+def test_the_resistance_of_a_schedule_is_of_the_phase_that_is_named(folder: Path) -> None:
+    phases = [
+        {"name": "roll", "speed": "20 mph", "duration": "20 s"},
+        {"name": "stand", "speed": "0 mph", "duration": "20 s"},
+    ]
+    study = tf.study(folder).replace({"drive.phases": phases})
+    table = run_campaign(replace(study.campaign(), cases=study.cases[:2]), folder / "out")
+    usual = table.set_index("case").loc["usual"]
+    assert usual["speed_m_s"] == 0
+    assert usual["rolling_resistance_phase"] == "roll"
+    assert usual["rolling_resistance_N"] > 0
+    page = write_campaign_report(study.campaign(), table, folder / "out/report.html").read_text(encoding="utf-8")
+    assert "at the end of its drive" not in page
+    assert page.count("rolling phase with most heat") == 3
+
+
 def test_page_of_nothing_but_failures(campaign: CampaignData, folder: Path) -> None:
     table = run_campaign(replace(campaign, cases=campaign.cases[2:]), folder / "out")
     page = write_campaign_report(campaign, table, folder / "report.html").read_text(encoding="utf-8")

@@ -296,7 +296,8 @@ def test_the_tables_of_a_simulated_rig_are_read_below_their_remarks(tmp_path: Pa
     assert isinstance(record, Record)
     table = record.table("high")
     assert list(table) == ["time [s]", "outer [degC]", "inner [degC]", "interface [degC]"]
-    assert table["outer [degC]"].max() > 100 and table["time [s]"].iloc[0] == 0
+    assert table["outer [degC]"].max() > 100
+    assert table["time [s]"].iloc[0] == 0
 
 
 def test_a_loaded_diagnosis_names_every_effect(tmp_path: Path) -> None:

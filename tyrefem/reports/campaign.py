@@ -151,7 +151,8 @@ def _pictures(done: pd.DataFrame) -> list[tuple[str, bytes]]:
     return [
         ("Highest temperature of each case, by tyre and pressure", png(bars(done, "hottest_degC"))),
         (
-            "Rolling resistance coefficient of each case at the end of its drive, by tyre and pressure",
+            "Rolling resistance coefficient of each case at the end of its rolling phase with most heat, by tyre and "
+            "pressure",
             png(bars(done, "rolling_resistance_coefficient")),
         ),
     ]

@@ -154,6 +154,7 @@ def row(case: Case, outcome: ResultData | str) -> dict[str, Any]:
         "hottest_depth_m": peak.depth_m,
         "hottest_time_s": peak.time_s,
         **regions,
+        "rolling_resistance_phase": resistance.phase,
         "rolling_resistance_N": resistance.force,
         "rolling_resistance_coefficient": resistance.coefficient,
         **{f"{name}_degC": float(readings[name].iloc[-1]) for name in readings.columns if name != "time_s"},
