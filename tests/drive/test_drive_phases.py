@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+import tyrefem
 from tyrefem.errors import InputError
 from tyrefem.inputs.drive import Drive
 
@@ -97,3 +98,16 @@ def test_what_is_refused(changes, message):
 def test_what_is_required(missing):
     with pytest.raises(InputError, match=f"{missing}: missing"):
         Drive.check({key: value for key, value in STEADY.items() if key != missing})
+
+
+@pytest.mark.parametrize("side", ["road", "rim"])
+def test_a_temperature_of_a_boundary_that_the_drive_replaces_is_warned_of(side):
+    """Phase 'b' takes that of the boundary, as long as the whole drive has none."""
+    phases = [{"name": "a", "duration": "10 s", f"{side}_temperature": "30 degC"}, {"name": "b", "duration": "10 s"}]
+    given = {f"boundaries.{side}.temperature": "60 degC", "drive.phases": phases}
+    read = tyrefem.study("nasa-22x5.5-8pr", given)
+    assert read.warnings == ()
+    not_read = tyrefem.study("nasa-22x5.5-8pr", given | {f"drive.{side}_temperature": "10 degC"})
+    (warning,) = not_read.warnings
+    assert warning.field == f"boundaries.{side}.temperature"
+    assert f"every phase of the drive has '{side}_temperature'" in warning.message

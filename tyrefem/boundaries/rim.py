@@ -21,7 +21,7 @@ class RimLaw(Law):
     side: ClassVar[str] = "rim"
     film: Annotated[FilmCoefficient, CONTACT_FILM] = 0.5 * CAL
     contact_resistance: Annotated[float, Unit("m**2*K/W", ge=0)] = 0.0
-    #: Rim temperature (initial, for a lumped rim); by default the drive's.
+    #: Rim temperature (initial, for a lumped rim) in phases whose `rim_temperature` is not given; by default `initial`.
     temperature: Temperature | None = None
 
     @property

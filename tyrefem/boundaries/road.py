@@ -24,7 +24,7 @@ class RoadLaw(Law):
     """
 
     side: ClassVar[str] = "road"
-    #: Road temperature; by default the drive's, else the ambient.
+    #: Road temperature in phases whose `road_temperature` is not given; by default the ambient.
     temperature: Temperature | None = None
     #: Fraction of the revolution on the road, in place of the footprint's.
     fraction: Annotated[float, Unit("1", ge=0, le=1)] | None = None

@@ -21,7 +21,7 @@ def study_warnings(
     >>> [warning.field for warning in light.warnings]
     ['materials.tread.density.value']
     """
-    warnings = [*card.warnings(), *_of_another_tyre(card, section)]
+    warnings = [*card.warnings(), *_of_another_tyre(card, section), *_of_driven_temperatures(card)]
     warnings += [warning.within(field="section") for warning in section.warnings]
     warnings += _of_materials(materials)
     if card.mechanics.energy is not None:
@@ -39,6 +39,18 @@ def _of_materials(materials: Mapping[str, MaterialCard]) -> Iterator[InputWarnin
     for warning, named in regions.items():
         also = f" (so in {', '.join(named[1:])})" if len(named) > 1 else ""
         yield InputWarning(f"{warning.message}{also}", warning.field).within(field=f"materials.{named[0]}")
+
+
+def _of_driven_temperatures(card: StudyCard) -> Iterator[InputWarning]:
+    """Temperatures of the boundaries that no phase reads, because all phases give their own."""
+    for side in ("road", "rim"):
+        key = f"{side}_temperature"
+        given = getattr(card.boundaries, side).temperature is not None
+        if given and all(getattr(phase, key) is not None for phase in card.drive.phases):
+            yield InputWarning(
+                f"is not read: every phase of the drive has '{key}', which goes before it; remove either",
+                field=f"boundaries.{side}.temperature",
+            )
 
 
 def _of_another_tyre(card: StudyCard, section: Section) -> Iterator[InputWarning]:
