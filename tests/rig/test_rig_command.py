@@ -33,12 +33,14 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def test_from_simulation_to_a_card_that_runs(here: Path, capfd: pytest.CaptureFixture[str]) -> None:
     assert main(["rig", "simulate", "mine.toml", "--seed", "1", "--every", "2 s", "--out", "sim"]) == 0
+    assert json.loads(Path("sim/summary.json").read_text(encoding="utf-8"))["file"] == "mine.toml"
     (run,) = read_table("sim/low.csv")
     assert run.comments[0].startswith("SIMULATED")
     assert {"readings.png", "patch.png", "summary.json", "low.csv"} == {file.name for file in Path("sim").iterdir()}
     assert main(["rig", "identify", "mine.toml", "sim/low.csv", "--base", "tread=nasa-tread", "--constant"]) == 0
     out = Path("results/rig-mine-identified")
     record = json.loads((out / "rig.json").read_text(encoding="utf-8"))
+    assert record["file"] == "mine.toml"
     tread = next(estimate for estimate in record["estimates"] if estimate["name"] == "tread.conductivity")
     assert tread["low_95"] < 0.25 < tread["high_95"]
     page = (out / "report.html").read_text(encoding="utf-8")
@@ -56,6 +58,13 @@ def test_from_simulation_to_a_card_that_runs(here: Path, capfd: pytest.CaptureFi
     assert main(["run", "nasa-22x5.5-8pr", *SHORT, "--no-pictures", "--no-vtk", "--set", change, "--out", "run"]) == 0
     assert Path("run/summary.json").is_file()
     capfd.readouterr()
+
+
+def test_a_simulation_is_shown_in_a_few_lines() -> None:
+    shown = repr(simulate("trtlab", every=60.0, fineness=Fineness(2, 5, 2)))
+    assert shown.startswith("Simulation of TRTLab rig")
+    assert "0.8 W, highest readings outer 1" in shown
+    assert shown.count("\n") == 2
 
 
 def test_layers_merge_to_the_same_mass_heat_and_resistance() -> None:

@@ -53,7 +53,7 @@ def simulate(
         results_folder(place, "rig simulate", simulation_files(card), inputs=beside(card, file), force=force) as folder,
         progress(f"{_name(file)}: simulated tests"),
     ):
-        done = rigs.simulate(card, every=step, seed=seed)
+        done = rigs.simulate(file, every=step, seed=seed)
         write_simulation(done, folder)
     rows = {name: run.temperatures.max().round(2).to_dict() for name, run in done.runs.items()}
     answer_with({"highest_degC": rows, "words": done.words, "folder": folder})
@@ -106,7 +106,7 @@ def identify(
                 count += 1
                 step(min(count, total))
 
-            identification = rigs.identify(card, tests=tests, linear=not constant, progress=one_more)
+            identification = rigs.identify(file, tests=tests, linear=not constant, progress=one_more)
         save(identification, folder, base or [])
     answer_with(identification.to_dict())
     for estimate in identification.properties:

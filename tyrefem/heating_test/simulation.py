@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.brief import Brief
 from tyrefem.errors import InputError
 from tyrefem.estimates.work import check_readings
 from tyrefem.heating_test.card import Clock, RigCard, load
@@ -26,7 +27,7 @@ _MOST = 200_000
 
 
 @dataclass(frozen=True, eq=False)
-class Simulation:
+class Simulation(Brief):
     """Simulated tests.
 
     Attributes
@@ -42,6 +43,18 @@ class Simulation:
     twin: Twin
     clock: Clock
     fields: Mapping[str, Array]
+
+    def _title(self) -> str:
+        return f"of {self.card.title}"
+
+    def _facts(self) -> Mapping[str, Any]:
+        highest = {name: run.temperatures.max() for name, run in self.runs.items()}
+        return {
+            name: f"{self.card.runs[name].power:g} W, highest readings "
+            + ", ".join(f"{sensor} {value:.1f}" for sensor, value in values.items())
+            + " degC"
+            for name, values in highest.items()
+        }
 
     @property
     def words(self) -> tuple[str, ...]:
