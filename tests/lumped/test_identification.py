@@ -136,6 +136,11 @@ def test_impossible_cards_are_refused(changes: dict[str, Any], words: str) -> No
     assert words in str(error.value)
 
 
+def test_runs_of_one_name_are_refused() -> None:
+    with pytest.raises(InputError, match=r"runs\.1\.name: two runs are named 'a'"):
+        ThermalCard.check({**BODY, "runs": [BODY["runs"][0] | {"name": "a"}, BODY["runs"][0] | {"name": "a"}]})
+
+
 def test_the_command_writes_films_with_standard_deviations(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

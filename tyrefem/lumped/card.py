@@ -134,7 +134,10 @@ class ThermalCard(Card):
 
     @model_validator(mode="after")
     def _measured(self) -> ThermalCard:
+        names = [run.name for run in self.runs]
         for number, run in enumerate(self.runs):
+            if run.name in names[:number]:
+                raise InputError(f"two runs are named '{run.name}'", field=f"runs.{number}.name")
             for table in ("plateau", "warm_up", "cool_down"):
                 for name in getattr(run, table):
                     if name not in self.bodies:
