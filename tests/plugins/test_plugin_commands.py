@@ -56,6 +56,28 @@ def test_a_wrong_command_is_refused(
     assert words in capfd.readouterr().err
 
 
+@pytest.mark.parametrize(
+    ("kind", "name"),
+    [
+        ("effect", "sun"),
+        ("boundary-law", "nasa"),
+        ("tan-delta-law", "exponential"),
+        ("strain-law", "fem"),
+        ("friction-law", "savkoor"),
+        ("sweep-answer", "tornado"),
+        ("sweep-answer", "vary"),
+    ],
+)
+def test_a_new_plugin_does_not_take_a_shipped_name(
+    folder: Path, kind: str, name: str, capfd: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["new", kind, name]) == 2
+    errors = capfd.readouterr().err
+    assert errors.count("\n") == 1
+    assert f"'{name}' is the name of a shipped {kind.replace('-', ' ')}" in errors or "another table" in errors
+    assert list(folder.iterdir()) == []
+
+
 def test_a_failing_check_has_exit_code_2(write: Write, capfd: pytest.CaptureFixture[str]) -> None:
     file = write("boundary-law", ("return self", "return -self"))
     assert main(["check", str(file)]) == 2

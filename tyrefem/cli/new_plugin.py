@@ -16,13 +16,14 @@ FOLDER = Path("plugins")
 
 def new_plugin(kind: str, name: str, out: Path | None, *, force: bool) -> None:
     """Write the template of a plugin, under a name or that of its example."""
-    from tyrefem.contracts.template import TEMPLATES, file_name, template
+    from tyrefem.contracts.template import TEMPLATES, check_free, file_name, template
     from tyrefem.interruption import interruption_delayed
     from tyrefem.output import atomic_path, place_of_output
     from tyrefem.output.file import results_file
 
     name = name or TEMPLATES[kind]
     text = template(kind, name)
+    check_free(kind, name)
     target = out or FOLDER / file_name(name)
     if os.path.lexists(target) and not (out is not None and force):
         hint = "; replace it with --force" if out is not None else "; nothing was written"

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import re
+import tempfile
 from pathlib import Path
 
 from tyrefem.errors import InputError
+from tyrefem.plugins.kind import is_ours, kind_of
+from tyrefem.plugins.loading import load_file
 
 #: Kinds of templates, as `tyrefem new` takes them: kind -> the name of its example.
 TEMPLATES = {
@@ -33,6 +36,30 @@ def template(kind: str, name: str) -> str:
         raise InputError(f"'{name}' is not allowed as a plugin's name; allowed: small letters, digits, -, as hot-wind")
     text = (Path(__file__).parent / "templates" / f"{kind}.txt").read_text(encoding="utf-8")
     return text.replace("CLASS", class_name(name)).replace("NAME", name)
+
+
+def check_free(kind: str, name: str) -> None:
+    """Refuse a name that a shipped plugin of the kind has: its class would be left out.
+
+    Raises
+    ------
+    InputError : the name is taken, or is not allowed.
+
+    >>> check_free("effect", "hot-wind")
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / file_name(name)
+        file.write_text(template(kind, name), encoding="utf-8")
+        classes = load_file(file).classes
+    for cls in classes:
+        its_kind = kind_of(cls)
+        if its_kind is None or is_ours(cls):
+            continue
+        if its_kind.name_of(cls) in its_kind.shipped():
+            raise InputError(f"'{name}' is the name of a shipped {its_kind.name}: choose another")
+        words = its_kind.complaint(cls)
+        if words:
+            raise InputError(f"'{name}' {words}")
 
 
 def class_name(name: str) -> str:
