@@ -9,12 +9,16 @@ import numpy as np
 import pytest
 from formula import STATED, Array, case, effect
 
+from tyrefem.diagnose.beside.discrepancy import NONE, Discrepancy
+from tyrefem.diagnose.beside.ranking import under
+from tyrefem.diagnose.beside.robustness import Robustness
 from tyrefem.diagnose.fitting.criterion import LogEvidence
 from tyrefem.diagnose.fitting.fits import linear_about
 from tyrefem.diagnose.fitting.forward_selection import ForwardSelection
 from tyrefem.diagnose.fitting.selection import SelectionProblem
 from tyrefem.diagnose.settings import DEFAULT
 from tyrefem.diagnose.unknowns.candidates import SetPrior
+from tyrefem.diagnose.words.result_tables import parameters
 
 N, HIDDEN = 80, 2.4
 T = np.linspace(0.05, 1.0, N)
@@ -57,3 +61,26 @@ def test_it_has_the_slope_of_its_twin(problem: SelectionProblem) -> None:
     # The sum is known and the twin's prior is wide, so it takes over what the card cannot.
     gain = about.log_evidence((TWIN,)) - about.log_evidence(())
     assert gain > (null.values[STATED] / STATED.sd) ** 2 / 2 - DEFAULT.leading_score
+
+
+def test_the_amended_study_states_the_sum_with_the_covariance_of_both(problem: SelectionProblem) -> None:
+    best, *_ = problem.settled(ForwardSelection().search(problem))
+    fit = best.fit
+    assert fit is not None
+    (hidden,) = TWIN.amplitudes
+    x, sd = fit.total(hidden)
+    assert x == pytest.approx(HIDDEN, abs=3 * sd)
+    # The data alone: one number, whose slope is that of the readings, in unit noise.
+    slope = (late({STATED.key: x + 1e-4}) - late({STATED.key: x - 1e-4})) / 2e-4
+    assert sd == pytest.approx((slope @ slope + 1 / (hidden.sd**2 + STATED.sd**2)) ** -0.5, rel=0.05)
+    # Each part by itself is as uncertain as the tolerance of the card.
+    assert min(fit.sd[hidden], fit.sd[STATED]) > 0.9 * STATED.sd > 3 * sd
+    # The tolerance is a part of what is stated, not a further change.
+    assert fit.totals == {hidden: (x, sd)}
+    (row,) = parameters([hidden], fit).values()
+    assert (row["value"], row["sd"]) == (x, sd)
+    beside = under(Discrepancy(NONE, 0.0), problem.residuals, [best])
+    robust = Robustness((replace(beside, probability=1.0),))
+    assert robust.spread(fit) == {hidden: pytest.approx(sd)}
+    assert robust.interval(hidden) == (x - 2 * sd, x + 2 * sd)
+    assert replace(fit, spread={hidden: 2 * sd}).total(hidden) == (x, 2 * sd)

@@ -552,11 +552,12 @@ def _missing_unknowns(
 ) -> tuple[Mapping[Unknown, float], Mapping[Unknown, float], list[Unknown]]:
     """Values and sd of the unknowns, and the unknowns that the study lacks."""
     best, missing = ranking.best, ranking.missing
-    if ranking.judgement.verdict == PARTLY:
-        shapes = [unknown for unknown in best.unknowns if unknown.effect == SHAPE and unknown.origin is None]
-        return best.values, best.sd, [*(unknown for member in best.members for unknown in member.unknowns), *shapes]
     if ranking.judgement.verdict != UNEXPLAINED:
-        return best.values, best.sd, [unknown for member in best.members for unknown in member.unknowns]
+        named = [unknown for member in best.members for unknown in member.unknowns]
+        if ranking.judgement.verdict == PARTLY:
+            named += [unknown for unknown in best.unknowns if unknown.effect == SHAPE and unknown.origin is None]
+        values, sd = ({unknown: each[place] for unknown, each in best.totals.items()} for place in (0, 1))
+        return values, sd, named
     if missing.over_time is not None and missing.over_time.values:
         return missing.over_time.values, missing.over_time.sd, list(missing.over_time.unknowns)
     # No effect is named: the amended study gets the patches of heat that differ from 0 by more than two sd.

@@ -229,15 +229,17 @@ def under(model: Discrepancy, residuals: Residuals, scored: Sequence[ScoredSet])
     whole = total(scored)
     named: dict[str, float] = {}
     values: dict[str, tuple[float, float]] = {}
+    totals: dict[str, tuple[float, float]] = {}
     for entry in scored:
         for member in entry.members:
             named[member.key] = named.get(member.key, 0.0) + math.exp(entry.score - whole)
             if entry.fit is not None:
-                values |= {
-                    unknown.key: (entry.fit.values[unknown], entry.fit.sd[unknown])
-                    for unknown in member.unknowns
-                    if unknown in entry.fit.values and unknown.key not in values
-                }
+                new = [each for each in member.unknowns if each in entry.fit.values and each.key not in values]
+                values |= {each.key: (entry.fit.values[each], entry.fit.sd[each]) for each in new}
+                totals |= {each.key: entry.fit.total(each) for each in new}
     named = dict(sorted(named.items(), key=lambda item: -item[1]))
     fits = {entry.members: entry.fit for entry in scored if entry.fit is not None}
-    return UnderDiscrepancy(model.name, model.size, model.words, 0.0, named, scored[0].members, values, fits, residuals)
+    best = scored[0].members
+    return UnderDiscrepancy(
+        model.name, model.size, model.words, 0.0, named, best, values, fits, residuals, totals=totals
+    )

@@ -32,7 +32,8 @@ class UnderDiscrepancy(Brief):
     name, size, words : see `tyrefem.diagnose.beside.discrepancy.Discrepancy`.
     probability : of the model, given the data.
     named : candidate key -> probability that it acts. best : the most probable set.
-    values : key of an effect's unknown -> (x, sd) in the best fitted set that contains the effect.
+    values : key of an effect's unknown -> (x, sd) in the best fitted set that contains the effect. totals : the same
+        with the tolerance of a sensor's card, of the unknowns that have one (`FittedSet.total`).
     fits : set -> its fit beside the model. residuals : beside the model.
     discrepancy : the model itself; None: none. allowed : effects that it allows for by itself; ``named`` and ``values``
         have them, too. held_out_without : such an effect's key -> ln p of the held-out runs by the best set beside the
@@ -51,9 +52,14 @@ class UnderDiscrepancy(Brief):
     discrepancy: Discrepancy | None = None
     allowed: Members = ()
     held_out_without: Mapping[str, float] = field(default_factory=dict)
+    totals: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
     def _title(self) -> str:
         return f"{self.name}: {self.probability:.3g}"
+
+    def stated(self, key: str) -> tuple[float, float]:
+        """(x, sd) of an effect's unknown as a study states it."""
+        return self.totals.get(key, self.values[key])
 
     @property
     def effects(self) -> Members:
@@ -144,24 +150,25 @@ class Robustness(Brief):
         """
         fitted = [model for model in self.models if unknown.key in model.values]
         probable = [model for model in fitted if model is self.models[0] or model.probability > 0.01]
-        known = [model.values[unknown.key] for model in probable or fitted]
+        known = [model.stated(unknown.key) for model in probable or fitted]
         return min(x - 2 * sd for x, sd in known), max(x + 2 * sd for x, sd in known)
 
     def spread(self, fit: FittedSet) -> dict[Unknown, float]:
         """Unknown of a fit's effects -> standard deviation of x over the discrepancy models, at least that of the fit.
 
         With x_m and s_m beside model m, of probability p_m, and x the value of the fit: the root of
-        (sum of p_m (s_m^2 + (x_m - x)^2)) / (sum of p_m).
+        (sum of p_m (s_m^2 + (x_m - x)^2)) / (sum of p_m). All are of the number that a study states, `FittedSet.total`.
         """
         wider = {}
         for unknown in (unknown for member in fit.members for unknown in member.unknowns if unknown in fit.values):
             known = [
-                (model.probability, *model.values[unknown.key]) for model in self.models if unknown.key in model.values
+                (model.probability, *model.stated(unknown.key)) for model in self.models if unknown.key in model.values
             ]
             total = sum(probability for probability, *_ in known)
             if total > 0:
-                square = sum(p * (sd**2 + (x - fit.values[unknown]) ** 2) for p, x, sd in known) / total
-                wider[unknown] = max(fit.sd[unknown], math.sqrt(square))
+                fitted, least = fit.total(unknown)
+                square = sum(p * (sd**2 + (x - fitted) ** 2) for p, x, sd in known) / total
+                wider[unknown] = max(least, math.sqrt(square))
         return wider
 
     def agrees(self, candidate: Candidate) -> bool:

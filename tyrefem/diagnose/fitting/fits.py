@@ -41,7 +41,7 @@ class FittedSet(Brief):
         held out.
     linear : linear model of the fitted runs about the fit, d = J x + e. state : state from which the fit can continue.
     shared_error : error that readings share, beside which the set was fitted; None: none.
-    spread : unknown -> standard deviation of x that also counts other discrepancy models (`Robustness.spread`).
+    spread : unknown -> standard deviation of its total that also counts other discrepancy models (`Robustness.spread`).
     """
 
     members: Members
@@ -112,6 +112,25 @@ class FittedSet(Brief):
         """Unknown -> posterior standard deviation of x; `spread` where it is given."""
         fitted = dict(zip(self.unknowns, (float(x) for x in self.posterior.sd), strict=True))
         return fitted | {unknown: 0.0 for member in self.members for unknown in member.presence} | dict(self.spread)
+
+    def total(self, unknown: Unknown) -> tuple[float, float]:
+        """x and standard deviation of the number that a study states: the sum of an unknown and its `twins`.
+
+        The data tell the sum of an effect on a sensor and of the tolerance on its card; each part alone is as uncertain
+        as the other's prior. The sum's variance counts their covariance.
+        """
+        parts = [place for place, each in enumerate(self.unknowns) if each.key == unknown.key]
+        if len(parts) < 2:
+            return self.values[unknown], self.sd[unknown]
+        variance = float(self.posterior.covariance[np.ix_(parts, parts)].sum())
+        x = sum(float(self.posterior.mean[place]) for place in parts)
+        return x, max(math.sqrt(max(variance, 0.0)), self.spread.get(unknown, 0.0))
+
+    @property
+    def totals(self) -> dict[Unknown, tuple[float, float]]:
+        """Unknown -> `total`; an unknown of the set's effects stands for its twin."""
+        keys = {unknown.key: unknown for member in self.members for unknown in member.unknowns}
+        return {unknown: self.total(unknown) for unknown in self.values if keys.get(unknown.key, unknown) == unknown}
 
     @property
     def p_value(self) -> float:

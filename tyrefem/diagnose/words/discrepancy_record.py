@@ -81,7 +81,7 @@ def discrepancy_rows(d: DiagnosisData) -> list[dict[str, Any]]:
             "effects": {key: min(share, 1.0) for key, share in model.named.items() if share >= LEAST},
             "parameters": {
                 key: {"value": unknowns[key].value(x), "sd": sd, "unit": unknowns[key].unit}
-                for key, (x, sd) in model.values.items()
+                for key, (x, sd) in ((key, model.stated(key)) for key in model.values)
                 if key in unknowns
             },
         }

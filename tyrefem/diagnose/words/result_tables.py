@@ -28,15 +28,12 @@ MOST_SETS = 30
 
 
 def parameters(unknowns: Sequence[Unknown], fit: FittedSet) -> dict[str, dict[str, Any]]:
-    """Fitted parameter -> value and standard deviation, SI."""
+    """Fitted parameter -> value and standard deviation, SI: of the number that a study states."""
+    totals = {unknown: fit.total(unknown) for unknown in unknowns if unknown.parameter and unknown in fit.values}
     return {
-        unknown.parameter.name: {
-            "value": unknown.value(fit.values[unknown]),
-            "sd": fit.sd[unknown],
-            "unit": unknown.unit,
-        }
-        for unknown in unknowns
-        if unknown.parameter is not None and unknown in fit.values
+        unknown.parameter.name: {"value": unknown.value(x), "sd": sd, "unit": unknown.unit}
+        for unknown, (x, sd) in totals.items()
+        if unknown.parameter is not None
     }
 
 

@@ -49,7 +49,8 @@ def effect_amounts(candidate: Candidate, fit: FittedSet) -> list[str]:
     signed = set(candidate.amplitudes[:1]) if candidate.effect.opposite else set()
     clauses = []
     for unknown in known:
-        size = amount(unknown.value(fit.values[unknown]), fit.sd[unknown], unknown.unit)
+        x, sd = fit.total(unknown)
+        size = amount(unknown.value(x), sd, unknown.unit)
         clauses.append(f"by {size.lstrip('+-')}" if unknown in signed else f"{parameter_name(unknown)}: {size}")
     return clauses
 
