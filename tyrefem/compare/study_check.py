@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from tyrefem.compare.experiment import experiments
+from tyrefem.compare.uncertain_drives import check_uncertain_drives
 from tyrefem.errors import InputError, nearest
 from tyrefem.inputs.study import StudyData
+from tyrefem.inputs.uncertain_numbers import uncertain_at
 from tyrefem.mechanics.cycle_schedule import check_cases
 
 
@@ -17,10 +19,9 @@ def check_study(study: StudyData) -> int:
         or column; the study's own run is none of the measured ones.
     """
     check_cases(study)
-    numbers = study.uncertain_numbers
     for key in study.card.uncertainty:
         try:
-            study.scaled(key, 1 + next(number.sd for number in numbers if key in number.keys))
+            study.scaled(key, 1 + (number.sd if (number := uncertain_at(study, key)) else 0.0))
         except InputError as error:
             raise InputError(
                 f"one standard deviation more: {error}", field=f"uncertainty.{key}", file=study.file
@@ -29,6 +30,7 @@ def check_study(study: StudyData) -> int:
         if entry.drive:
             _check_drive(study, number)
     planned = experiments(study) if study.measured else ()
+    check_uncertain_drives(study, planned)
     names = {experiment.origin for experiment in planned}
     if study.card.run is not None and names and study.card.run not in names:
         wrong = f"no measured run '{study.card.run}'{nearest(study.card.run, names)}"

@@ -23,6 +23,7 @@ from tyrefem.compare.reduced_inputs import (
     reducible,
 )
 from tyrefem.compare.runs import Runs, store_key
+from tyrefem.compare.uncertain_drives import check_uncertain_drives
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
 from tyrefem.inputs.study_plugins import plugin_summary
@@ -95,6 +96,8 @@ def compare(
     planned = experiments(study, table, ignore=columns.ignore, rename=columns.rename)
     if result is None and isinstance(study, StudyData):
         _check_times(study, planned)
+    if judged.inputs and isinstance(study, StudyData):
+        check_uncertain_drives(study, planned)
     keys = dict(study.uncertainty) if judged.inputs else {}
     solved, certificate, model_notes = _solved(study, planned, result, keys, work)
     all_histories, curves, notes = [], {}, []

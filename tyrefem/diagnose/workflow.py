@@ -12,6 +12,7 @@ from typing import Any, Unpack
 from tyrefem.brief import Brief
 from tyrefem.compare.experiment import Table, experiments
 from tyrefem.compare.omitted import ERROR, columns_note, outside_notes
+from tyrefem.compare.uncertain_drives import check_uncertain_drives
 from tyrefem.diagnose.amend import Change, amended, changes
 from tyrefem.diagnose.beside.best_fit import fit_beside, not_asked_for
 from tyrefem.diagnose.beside.free_heat import free_heat
@@ -262,6 +263,7 @@ def _measured_drives(
     """The measured runs as blocks of readings within the simulated drives, and notes on what is left out."""
     planned = experiments(study, table, ignore=columns.ignore, rename=columns.rename)
     NEEDS.check_fitted(study, [experiment.hold_out for experiment in planned])
+    check_uncertain_drives(study, planned)
     runs = tuple(run for run in (measured_drive(experiment, study, settings) for experiment in planned) if run.sensors)
     fitted = [run for run in runs if not run.hold_out]
     if not fitted:

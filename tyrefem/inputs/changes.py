@@ -89,6 +89,24 @@ def canonical(data: Mapping[str, Any], key: str) -> str:
     return ".".join(_parts(data, key))
 
 
+def by_places(data: Mapping[str, Any], key: str) -> str:
+    """The full dotted name with entries of lists by their numbers: the same for all names of one number of a study.
+
+    >>> phases = {"drive": {"phases": [{"name": "rolling", "speed": "20 mph"}]}}
+    >>> by_places(phases, "drive.phases.rolling.speed"), by_places(phases, "drive.phases.0.speed")
+    ('drive.phases.0.speed', 'drive.phases.0.speed')
+    """
+    place: Any = data
+    parts = _parts(data, key)
+    for depth, part in enumerate(parts):
+        if isinstance(place, list):
+            parts[depth] = str(entry_number(place, part, key))
+            place = place[int(parts[depth])]
+        else:
+            place = place.get(part) if isinstance(place, Mapping) else None
+    return ".".join(parts)
+
+
 def _parts(data: Mapping[str, Any], key: str) -> list[str]:
     parts = [part.strip().replace("-", "_") if i == 0 else part.strip() for i, part in enumerate(key.split("."))]
     if not all(parts):
@@ -133,18 +151,34 @@ def _step(place: Any, part: str, so_far: str, path: list[str]) -> Any:
 
 
 def _refuse_overridden(data: Mapping[str, Any], parts: list[str]) -> None:
-    drive = data.get("drive")
-    if parts[0] != "drive" or len(parts) < 2 or not isinstance(drive, Mapping):
-        return
-    phases = drive.get("phases")
-    same = {parts[1], *EXCLUSIVE_KEYS.get(parts[1], ())}
-    if isinstance(phases, list) and phases and all(isinstance(p, Mapping) and same & set(p) for p in phases):
-        names = [str(p.get("name", number)) for number, p in enumerate(phases)]
+    if names := _overriding(data, parts):
+        same = {parts[1], *EXCLUSIVE_KEYS.get(parts[1], ())}
         raise InputError(
             f"every phase sets '{' or '.join(sorted(same))}': name the phase, "
             f"e.g. drive.phases.{names[0]}.{parts[1]} (phases: {', '.join(names)})",
             field=".".join(parts),
         )
+
+
+def is_overridden(data: Mapping[str, Any], key: str) -> bool:
+    """Whether every phase sets a number of the drive, or its alternative, by itself: that of ``[drive]`` is not used.
+
+    >>> is_overridden({"drive": {"speed": "9 m/s", "phases": [{"speed": "8 m/s"}]}}, "drive.speed")
+    True
+    """
+    return bool(_overriding(data, _parts(data, key)))
+
+
+def _overriding(data: Mapping[str, Any], parts: list[str]) -> list[str]:
+    """Names of all phases, if every one sets the number of the drive or its alternative; else empty."""
+    drive = data.get("drive")
+    if parts[0] != "drive" or len(parts) < 2 or not isinstance(drive, Mapping):
+        return []
+    phases = drive.get("phases")
+    same = {parts[1], *EXCLUSIVE_KEYS.get(parts[1], ())}
+    if isinstance(phases, list) and phases and all(isinstance(p, Mapping) and same & set(p) for p in phases):
+        return [str(p.get("name", number)) for number, p in enumerate(phases)]
+    return []
 
 
 def _drop_exclusive(parts: list[str], place: dict[str, Any]) -> None:
@@ -160,6 +194,11 @@ def _drop_exclusive(parts: list[str], place: dict[str, Any]) -> None:
         }
     for exclusive_key in exclusive_keys.get(parts[-1], []):
         place.pop(exclusive_key, None)
+
+
+def check_used(data: Mapping[str, Any], key: str) -> None:
+    """Raises InputError for a number of the drive that every phase sets by itself, so that it is not used."""
+    _refuse_overridden(data, _parts(data, key))
 
 
 def value_at(data: Mapping[str, Any], key: str, near: Any = None) -> Any:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from tyrefem.cards import Card
 from tyrefem.errors import InputError
-from tyrefem.inputs.changes import check_factor, scaled, value_at
+from tyrefem.inputs.changes import by_places, check_factor, check_used, scaled, value_at
 from tyrefem.inputs.deviations import share_of
 from tyrefem.materials.reads import STIFFNESS, tables_read
 
@@ -103,19 +103,20 @@ def uncertain_numbers(study: StudyOfCards) -> tuple[UncertainNumber, ...]:
     stated: dict[int, str] = {}
     for key, deviation in study.card.uncertainty.items():
         try:
+            check_used(study.data, key)
             number = _stated(_named(study, key, 0.0), deviation)
             number.changes(1.0)
+            full = by_places(study.data, key)
         except InputError as error:
             raise InputError(error.message, field=f"uncertainty.{key}", file=study.file) from None
-        place = places.get(key)
+        place = places.get(full)
         if place is None:
             place = len(numbers)
             numbers.append(number)
-            places |= dict.fromkeys(number.keys, place)
+            places |= dict.fromkeys((full, *number.keys), place)
         elif place in stated and numbers[place].sd != number.sd:
-            message = (
-                f"is the same number as '{stated[place]}': both regions use the card '{number.card}'; state only one"
-            )
+            why = f": both regions use the card '{number.card}'" if number.card else ""
+            message = f"is the same number as '{stated[place]}'{why}; state only one"
             raise InputError(message, field=f"uncertainty.{key}", file=study.file)
         else:
             numbers[place] = replace(numbers[place], sd=number.sd)
@@ -138,12 +139,19 @@ def uncertain_number(study: StudyOfCards, key: str, sd: float = 0.0) -> Uncertai
     ------
     InputError : there is no number of that name; names the nearest.
     """
-    together = next((number for number in study.uncertain_numbers if key in number.keys), None)
+    together = uncertain_at(study, key)
     if together is None:
         return _named(study, key, sd)
     first = key.split(".")[1]
     regions = tuple(sorted(together.regions, key=lambda region: region != first))
     return replace(together, key=key, sd=sd, regions=regions)
+
+
+def uncertain_at(study: StudyOfCards, key: str) -> UncertainNumber | None:
+    """The uncertain number with a dotted name, however it is written; None if the number is not uncertain."""
+    full = by_places(study.data, key)
+    numbers = study.uncertain_numbers
+    return next((number for number in numbers if any(by_places(study.data, k) == full for k in number.keys)), None)
 
 
 def _named(study: StudyOfCards, key: str, sd: float) -> UncertainNumber:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from tyrefem.diagnose.settings import DiagnosisSettings
 from tyrefem.diagnose.unknowns.unknown import Unknown
+from tyrefem.inputs.changes import by_places
 from tyrefem.inputs.name_patterns import SCALES
 from tyrefem.inputs.study import StudyData
 from tyrefem.mechanics.strain_laws import strain_laws
@@ -20,6 +21,6 @@ def gauges(study: StudyData, settings: DiagnosisSettings) -> tuple[Unknown, ...]
     """
     if study.card.mesh.file is not None or strain_laws()[study.card.mechanics.strain].presses:
         return ()
-    stated = {key for number in study.uncertain_numbers for key in number.keys}
+    stated = {by_places(study.data, key) for number in study.uncertain_numbers for key in number.keys}
     keys = (f"{SCALES}.{region}" for region in study.section.regions)
     return tuple(Unknown(key, settings.gauge_sd, keys=(key,)) for key in keys if key not in stated)
