@@ -21,7 +21,8 @@ def check_study(study: StudyData) -> int:
     check_cases(study)
     for key in study.card.uncertainty:
         try:
-            study.scaled(key, 1 + (number.sd if (number := uncertain_at(study, key)) else 0.0))
+            uncertain = uncertain_at(study, key)
+            study.scaled(key, 1 + (uncertain.sd if uncertain else 0.0))
         except InputError as error:
             raise InputError(
                 f"one standard deviation more: {error}", field=f"uncertainty.{key}", file=study.file

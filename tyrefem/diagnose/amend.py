@@ -10,7 +10,8 @@ import numpy as np
 
 from tyrefem.diagnose.data.residuals import Residuals
 from tyrefem.diagnose.unknowns.unknown import Unknown, with_values
-from tyrefem.inputs.changes import scaled, value_at
+from tyrefem.errors import InputError
+from tyrefem.inputs.changes import all_changed, by_places, scaled, value_at
 from tyrefem.inputs.study import StudyData
 
 
@@ -58,7 +59,8 @@ def rounded(change: Sequence[Change]) -> dict[Unknown, float]:
 def amended(study: StudyData, change: Sequence[Change]) -> StudyData:
     """The study with the rounded changes and their sources.
 
-    A factor on a number of the drive also applies to the drives of the ``[[measured]]`` runs.
+    A factor on a number of the drive also applies to the drives of the ``[[measured]]`` runs. A deviation that the
+    study states in ``[uncertainty]`` becomes that of the fit.
     """
     totals = rounded(change)
     new = with_values(study, {unknown: x for unknown, x in totals.items() if unknown.effect})
@@ -69,12 +71,13 @@ def amended(study: StudyData, change: Sequence[Change]) -> StudyData:
     runs = [dict(entry) for entry in new.data.get("measured", [])]
     for each in base:
         if each.unknown.key.startswith("drive."):
-            key = each.unknown.key.removeprefix("drive.")
             for entry in runs:
-                if key in entry.get("drive", {}):
-                    entry["drive"] = {**entry["drive"], key: _scaled(entry["drive"][key], each)}
+                if "drive" in entry:
+                    entry["drive"] = {name: _of_run(new, name, x, each) for name, x in entry["drive"].items()}
     if runs != new.data.get("measured", []):
         new = new.replace({"measured": runs})
+    if stated := _deviations(new, base):
+        new = new.replace({"uncertainty": {**new.data["uncertainty"], **stated}})
     entries = [dict(entry) for entry in new.data.get("effects", [])]
     for each in change:
         if each.unknown.effect is None:
@@ -108,6 +111,50 @@ def _scaled(written: Any, change: Change) -> Any:
     """A written base number after a change."""
     digits = max(3, int(np.ceil(-np.log10(max(change.sd, 1e-6) / 100))) + 1)
     return scaled(written, change.unknown.value(change.x), digits)
+
+
+def _of_run(study: StudyData, name: str, written: Any, change: Change) -> Any:
+    """A value of a run's ``drive`` after the change of a number of the drive: of this number, or of a list with it."""
+    key = change.unknown.key
+    if _place(study, f"drive.{name}") == _place(study, key):
+        return _scaled(written, change)
+    if not isinstance(written, list) or not key.startswith(f"drive.{name}."):
+        return written
+    alone = {"drive": {name: written}}
+    try:
+        return all_changed(alone, {key: _scaled(value_at(alone, key), change)})["drive"][name]
+    except InputError:
+        # The run has no such phase.
+        return written
+
+
+def _place(study: StudyData, key: str) -> str:
+    """The name that a number has however it is written; of what the study's own drive does not have, as it is."""
+    try:
+        return by_places(study.data, key)
+    except InputError:
+        return key
+
+
+def _deviations(study: StudyData, base: Sequence[Change]) -> dict[str, Any]:
+    """Name in ``[uncertainty]`` -> deviation after the changes; a deviation stated there replaces that of a card.
+
+    A quantity stays one, of the amended number.
+    """
+    known = {_place(study, key): each for each in base for key in (*each.unknown.keys, each.unknown.key)}
+    deviations: dict[str, Any] = {}
+    for key, stated in study.data.get("uncertainty", {}).items():
+        change = known.get(_place(study, key))
+        if change is None or not change.sd > 0:
+            continue
+        if not isinstance(study.card.uncertainty[key], str):
+            share = f"{100 * change.sd:.2g} %"
+            deviations[key] = share if isinstance(stated, str) else float(f"{change.sd:.2g}")
+        elif change.unknown.kelvins:
+            deviations[key] = f"{change.unknown.kelvins * change.unknown.value(change.x) * change.sd:.2g} K"
+        else:
+            deviations[key] = scaled(value_at(study.data, key, study.folder), change.sd, 2).lstrip("-")
+    return deviations
 
 
 def _provenance(study: StudyData, change: Change, key: str) -> dict[str, Any]:
