@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from hidden import measure, study
+from hidden import HELD_OUT, measure, study
 
 import tyrefem as tf
 from tyrefem.diagnose.forward.forward_model import ForwardModel
@@ -39,7 +39,15 @@ def written(folder: Path) -> tf.Study:
 def test_swapped_channels_are_identified_and_looked_at_again(tmp_path: Path) -> None:
     owner = written(tmp_path / "study")
     measure(owner, [SWAP])
-    diagnosis = owner.diagnose(settings=COARSE, candidates=few)
+    tables = list((tmp_path / "study").glob("*.csv"))
+
+    def forget(*step: object) -> None:
+        """No look reads the tables again."""
+        for table in tables:
+            table.unlink(missing_ok=True)
+
+    diagnosis = owner.diagnose(settings=COARSE, candidates=few, progress=forget)
+    assert not any(table.exists() for table in tables)
     assert diagnosis.verdict == "identified"
     assert [member.key for member in diagnosis.best.members] == ["swapped-channels (crown-outer, sidewall-outer)"]
     assert diagnosis.again is not None, "the second look at the amended study is finished"
@@ -119,3 +127,15 @@ def test_a_base_number_without_a_tyre_is_still_an_error(tmp_path: Path, monkeypa
     monkeypatch.setattr(ForwardModel, "with_values", refused)
     with pytest.raises(InputError, match="no such tyre"):
         owner.diagnose(settings=replace(COARSE, looks=1), candidates=few, rerun=False)
+
+
+def test_a_held_out_run_with_readings_at_its_start_only_tests_nothing(tmp_path: Path) -> None:
+    owner = written(tmp_path / "study")
+    measure(owner, [SWAP])
+    table = tmp_path / "study" / f"{HELD_OUT}.csv"
+    table.write_text("".join(table.read_text(encoding="utf-8").splitlines(keepends=True)[:2]), encoding="utf-8")
+    diagnosis = owner.diagnose(settings=replace(COARSE, looks=1), candidates=few)
+    assert [run.name for run in diagnosis.gap.runs] == ["slow", "loaded"]
+    note = f"held-out run '{HELD_OUT}' was left out: it has readings at 0 s only, which test nothing"
+    assert note in diagnosis.notes
+    assert diagnosis.gap.held_out == []

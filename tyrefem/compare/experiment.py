@@ -33,6 +33,7 @@ class Experiment:
     drive : dotted overrides of the study's drive for this run; empty = the study's own drive.
     noise : sensor -> K, standard deviation of a reading; without those of the sensors' cards.
     hold_out : whether no fit may use the run.
+    entry : number of the entry; None: the study does not name the run.
     """
 
     run: MeasuredRun
@@ -40,16 +41,20 @@ class Experiment:
     drive: Mapping[str, Any] = field(default_factory=dict)
     noise: Mapping[str, float] = field(default_factory=dict)
     hold_out: bool = False
+    entry: int | None = None
 
     @classmethod
-    def of(cls, run: MeasuredRun, entry: MeasuredEntryLike | None) -> Experiment:
-        """A run, with the names of the study's sensors, as its entry says; None: a run that the study does not name."""
+    def of(cls, run: MeasuredRun, entry: MeasuredEntryLike | None, number: int | None = None) -> Experiment:
+        """A run, with the names of the study's sensors, as its entry says; None: a run that the study does not name.
+
+        ``number``: of the entry.
+        """
         if not run.sensors:
             raise InputError(f"run '{run.name}': every sensor is ignored", file=run.file)
         if entry is None:
             return cls(run, run.name)
         noise = {} if entry.noise is None else dict.fromkeys(run.sensors, entry.noise)
-        return cls(run, run.name, dict(entry.drive), noise, entry.hold_out)
+        return cls(run, run.name, dict(entry.drive), noise, entry.hold_out, number)
 
     @property
     def name(self) -> str:
@@ -95,7 +100,7 @@ def experiments(
     """
     given = ColumnNames.of(ignore=ignore, rename=rename)
     reader = _ExperimentReader(study.measured, given)
-    planned = reader.of_entries(study.measured) if table is None else reader.of_tables(table)
+    planned = reader.of_entries(reader.entries) if table is None else reader.of_tables(table)
     given.require(reader.columns)
     if not planned:
         raise InputError("there is no measured run to compare with")
@@ -104,6 +109,14 @@ def experiments(
     if table is None and isinstance(study, StudyData):
         check_runs(study, [experiment.origin for experiment in distinct])
     return distinct
+
+
+def driven_as(planned: Sequence[Experiment], study: StudyLike) -> tuple[Experiment, ...]:
+    """The experiments with the drives in a study whose entries are of the same runs, such as an amended study."""
+    entries = study.measured
+    return tuple(
+        each if each.entry is None else replace(each, drive=dict(entries[each.entry].drive)) for each in planned
+    )
 
 
 def driven(study: StudyLike, experiment: Experiment) -> StudyLike:
@@ -176,7 +189,9 @@ class _ExperimentReader:
                 wrong = f"no run '{entry.run}'{nearest(entry.run, names)}"
                 raise InputError(wrong, field="measured.run", file=entry.table)
             wanted = {entry.run} if entry.run is not None else {*names} - {*named[_path(entry.table)]}
-            result += [Experiment.of(self._later(run, measured), entry) for run in measured.runs if run.name in wanted]
+            result += [
+                self._experiment(self._later(run, measured), entry) for run in measured.runs if run.name in wanted
+            ]
         return result
 
     def of_tables(self, table: Table) -> list[Experiment]:
@@ -221,7 +236,7 @@ class _ExperimentReader:
             self._note(measured, entry)
             for run in measured.runs:
                 if of_run.get(run.name) is entry:
-                    result[run.name] = Experiment.of(self._later(run, measured), entry)
+                    result[run.name] = self._experiment(self._later(run, measured), entry)
         return [result[name] for name in of_run if name in result]
 
     def _of_frame(self, frame: Any) -> list[Experiment]:
@@ -242,7 +257,11 @@ class _ExperimentReader:
         self.columns += [*known, *(entry.rename.values() if entry else ())]
         shifted = run.shifted(0.0 if entry is None else entry.time_offset)
         renamed = shifted.without(names.ignore).renamed(names.rename)
-        return Experiment.of(renamed.without(name for name in self.given.ignore if name not in known), entry)
+        return self._experiment(renamed.without(name for name in self.given.ignore if name not in known), entry)
+
+    def _experiment(self, run: MeasuredRun, entry: MeasuredEntryLike | None) -> Experiment:
+        """The run as its entry says."""
+        return Experiment.of(run, entry, next((n for n, each in enumerate(self.entries) if each is entry), None))
 
     def _names(self, entry: MeasuredEntryLike | None) -> ColumnNames:
         """The given names, before those of an entry."""

@@ -10,7 +10,7 @@ from functools import partial
 from typing import Any, Unpack
 
 from tyrefem.brief import Brief
-from tyrefem.compare.experiment import Table, experiments
+from tyrefem.compare.experiment import Experiment, Table, driven_as, experiments
 from tyrefem.compare.omitted import ERROR, columns_note, outside_notes
 from tyrefem.compare.uncertain_drives import check_uncertain_drives
 from tyrefem.diagnose.amend import Change, amended, changes
@@ -74,7 +74,6 @@ from tyrefem.diagnose.verdicts.verdict import (
 )
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
-from tyrefem.measured.names import ColumnNames
 from tyrefem.requirements import Requirements
 from tyrefem.threads import one_thread
 
@@ -115,7 +114,10 @@ def diagnose(study: StudyData, table: Table | None = None, **options: Unpack[Dia
     """
     columns, method, work = grouped(options)
     NEEDS.check(study, table)
-    runs, _ = _measured_drives(study, table, columns, method.settings)
+    planned = experiments(study, table, ignore=columns.ignore, rename=columns.rename)
+    NEEDS.check_fitted(study, [experiment.hold_out for experiment in planned])
+    check_uncertain_drives(study, planned)
+    runs, _ = _measured_drives(study, planned, method.settings)
     conformal = None
     if method.calibration is not None:
         sensors = dict.fromkeys(name for run in runs for name in run.parts())
@@ -131,9 +133,9 @@ def diagnose(study: StudyData, table: Table | None = None, **options: Unpack[Dia
         while not looks or (looks[-1].verdict == IDENTIFIED and len(looks) < method.settings.looks):
             further = work.look(len(looks))
             if looks:
-                looks.append(_further_look(looks[-1], table, columns, method, further))
+                looks.append(_further_look(looks[-1], driven_as(planned, looks[-1].study), method, further))
             else:
-                looks.append(_look_by_laws(study, table, columns, method, further))
+                looks.append(_look_by_laws(study, planned, method, further))
     result = looks.pop()
     while looks:
         result = replace(looks.pop(), again=result)
@@ -141,16 +143,16 @@ def diagnose(study: StudyData, table: Table | None = None, **options: Unpack[Dia
 
 
 def _look_by_laws(
-    study: StudyData, table: Table | None, columns: ColumnNames, method: Method, work: SimulationWork
+    study: StudyData, planned: Sequence[Experiment], method: Method, work: SimulationWork
 ) -> DiagnosisData:
     """One diagnosis; by another strain law if the study's does not explain the data and they clearly prefer it.
 
     The law that leaves the smallest rms comes first.
     """
-    stated = _look(study, table, columns, method, work)
+    stated = _look(study, planned, method, work)
     for trial in sorted((each for each in stated.law_trials if each.promising), key=lambda each: each.rms):
         replaced = by_law(study, trial.law, trial.level)
-        other = _look(replaced, table, columns, method.by_law(trial.law), work.by_law(trial.law), law_replaced=True)
+        other = _look(replaced, planned, method.by_law(trial.law), work.by_law(trial.law), law_replaced=True)
         result = by_better_law(stated, other, trial)
         if result.better_law is not None:
             return result
@@ -158,7 +160,7 @@ def _look_by_laws(
 
 
 def _further_look(
-    before: DiagnosisData, table: Table | None, columns: ColumnNames, method: Method, work: SimulationWork
+    before: DiagnosisData, planned: Sequence[Experiment], method: Method, work: SimulationWork
 ) -> DiagnosisData:
     """The diagnosis of a study that another diagnosis has amended.
 
@@ -166,16 +168,15 @@ def _further_look(
     named with those of the amended study only.
     """
     at_hand = before.gap.responses
-    quick = _look(before.study, table, columns, method, replace(work, rerun=False), like=at_hand)
+    quick = _look(before.study, planned, method, replace(work, rerun=False), like=at_hand)
     if quick.verdict == NO_GAP and quick.gap.responses[0].modes is at_hand[0].modes:
         return quick
-    return _look_by_laws(before.study, table, columns, method, work)
+    return _look_by_laws(before.study, planned, method, work)
 
 
 def _look(
     study: StudyData,
-    table: Table | None,
-    columns: ColumnNames,
+    planned: Sequence[Experiment],
     method: Method,
     work: SimulationWork,
     *,
@@ -189,7 +190,7 @@ def _look(
     """
     began = time.perf_counter()
     settings = method.settings
-    runs, notes = _measured_drives(study, table, columns, settings)
+    runs, notes = _measured_drives(study, planned, settings)
     in_all_runs, impossible = possible(study, method.candidates(study))
     notes = (*notes, *impossible, *beside_rolling(study, in_all_runs))
     in_one_run = _in_single_runs(study, in_all_runs, runs, settings)
@@ -258,13 +259,13 @@ def _look(
 
 
 def _measured_drives(
-    study: StudyData, table: Table | None, columns: ColumnNames, settings: DiagnosisSettings
+    study: StudyData, planned: Sequence[Experiment], settings: DiagnosisSettings
 ) -> tuple[tuple[MeasuredDrive, ...], tuple[str, ...]]:
-    """The measured runs as blocks of readings within the simulated drives, and notes on what is left out."""
-    planned = experiments(study, table, ignore=columns.ignore, rename=columns.rename)
-    NEEDS.check_fitted(study, [experiment.hold_out for experiment in planned])
-    check_uncertain_drives(study, planned)
-    runs = tuple(run for run in (measured_drive(experiment, study, settings) for experiment in planned) if run.sensors)
+    """The measured runs as blocks of readings within the simulated drives, and notes on what is left out.
+
+    A held-out run with readings at 0 s only is left out: they are the initial temperature, and test nothing.
+    """
+    runs = [run for run in (measured_drive(experiment, study, settings) for experiment in planned) if run.sensors]
     fitted = [run for run in runs if not run.hold_out]
     if not fitted:
         outside = "; ".join(outside_notes(study, planned)).replace(ERROR, "")
@@ -273,8 +274,12 @@ def _measured_drives(
     for run in fitted:
         if run.last <= 0:
             raise InputError(f"run '{run.name}' has readings at 0 s only", field="measured", file=study.file)
+    empty = [run for run in runs if run.last <= 0]
     notes = (*outside_notes(study, planned), *columns_note(planned))
-    return with_noise_of_data(runs, settings), tuple(note.removeprefix("Note: ") for note in notes)
+    return with_noise_of_data(tuple(run for run in runs if run not in empty), settings), (
+        *(f"held-out run '{run.name}' was left out: it has readings at 0 s only, which test nothing" for run in empty),
+        *(note.removeprefix("Note: ") for note in notes),
+    )
 
 
 def _in_single_runs(
