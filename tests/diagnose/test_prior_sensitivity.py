@@ -21,6 +21,7 @@ from tyrefem.diagnose.numbers import percent
 from tyrefem.diagnose.settings import DEFAULT
 from tyrefem.diagnose.unknowns.candidates import Candidate, Members, SetPrior
 from tyrefem.diagnose.unknowns.unknown import Unknown
+from tyrefem.diagnose.verdicts.partly import beside_discrepancies
 from tyrefem.diagnose.verdicts.prior_sensitivity import (
     AMPLITUDE,
     FACTORS,
@@ -31,7 +32,7 @@ from tyrefem.diagnose.verdicts.prior_sensitivity import (
     prior_sensitivity,
     prior_words,
 )
-from tyrefem.diagnose.verdicts.verdict import CONFOUNDED, IDENTIFIED, UNEXPLAINED, Judgement, judge, ranked
+from tyrefem.diagnose.verdicts.verdict import CONFOUNDED, IDENTIFIED, PARTLY, UNEXPLAINED, Judgement, judge, ranked
 
 T = np.linspace(0.0, 1.0, 40)
 SETTINGS = replace(DEFAULT, largest=1)
@@ -120,7 +121,7 @@ def test_a_name_that_a_prior_decides_is_said_and_a_certain_one_is_silent() -> No
     changes = changes_of(judgement, *rest)
     weaker = next(each for each in changes if (each.prior, each.factor) == (PROBABILITY, FACTORS[0]))
     assert (weaker.effect, weaker.verdict, weaker.decides) == ("early", CONFOUNDED, True)
-    sentence = prior_words(changes, judgement.verdict)[0]
+    sentence = prior_words(changes, judgement.verdict, ["early"])[0]
     share = percent(weaker.share)
     assert sentence.startswith(
         "This name rests on the prior of early: with a third of its probability before the data, confounded "
@@ -132,6 +133,39 @@ def test_a_name_that_a_prior_decides_is_said_and_a_certain_one_is_silent() -> No
     assert len(changes) == 4 * len(leading_effects(certain.ranking)) + 2
     assert not any(change.decides for change in changes)
     assert prior_words(changes, certain.verdict) == ()
+
+
+def test_a_name_that_stays_does_not_rest_on_the_prior() -> None:
+    more = PriorChange("sun", PROBABILITY, 3.0, IDENTIFIED, "hot-road + sun", 0.97, True)
+    surer = PriorChange("hot-road", AMPLITUDE, 1 / 3, IDENTIFIED, "hot-road", 0.99, True)
+    lost = PriorChange("hot-road", PROBABILITY, 1 / 3, CONFOUNDED, "hot-road", 0.8, True)
+    other = PriorChange("no effect", PROBABILITY, 3.0, PARTLY, "sun", 0.96, True)
+    assert prior_words([more, surer, lost, other], PARTLY, ["hot-road"]) == (
+        "More would be named with another value of the prior of sun: with 3 times its probability before the data, "
+        "identified (hot-road + sun, 97 %).",
+        "The verdict rests on the prior of hot-road, but the name does not: with a third of its usual size, "
+        "identified (hot-road, 99.0 %).",
+        "This name rests on the prior of hot-road: with a third of its probability before the data, "
+        "confounded (most probable: hot-road, 80 %).",
+        "This name rests on the prior of no effect: with 3 times its probability before the data, "
+        "partly identified (sun, 96 %).",
+    )
+    assert prior_words([surer], CONFOUNDED)[0].startswith("This verdict rests on the prior of hot-road: ")
+
+
+def test_an_effect_that_the_fit_of_all_does_not_ask_for_is_not_named_with_other_priors() -> None:
+    judgement, made, null, best = judged(pair(), size=6.0)
+    (early,) = best.members
+    beside = UnderDiscrepancy(
+        "energy", 0.0, "another energy", 1.0, {"early": 1.0}, best.members, {"early": (6.0, 0.2)},
+        {best.members: best},
+    )  # fmt: skip
+    unexplained = replace(judgement, verdict=UNEXPLAINED)
+    for idle, verdict in (((), PARTLY), ((early,), UNEXPLAINED)):
+        robust = Robustness((beside,), idle=idle)
+        assert beside_discrepancies(unexplained, robust, SETTINGS).verdict == verdict
+        changes = prior_sensitivity(unexplained, made.residuals, null, best, robust)
+        assert not any(change.verdict == PARTLY for change in changes if idle)
 
 
 def test_an_estimated_set_changes_as_if_it_were_fitted() -> None:

@@ -15,6 +15,7 @@ from tyrefem.diagnose.data.residual_tables import residual_table, rms
 from tyrefem.diagnose.numbers import percent
 from tyrefem.diagnose.unknowns.candidates import SetPrior
 from tyrefem.diagnose.verdicts.prior_sensitivity import PriorChange, prior_sensitivity
+from tyrefem.diagnose.verdicts.verdict import IDENTIFIED, PARTLY
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -115,6 +116,12 @@ class DiagnosisData(Brief):
     def verdict(self) -> str:
         """identified, partly identified, confounded, unexplained or no gap."""
         return self.judgement.verdict
+
+    @property
+    def named_effects(self) -> tuple[str, ...]:
+        """Keys of the effects that the verdict names."""
+        named = self.best.members if self.verdict in (IDENTIFIED, PARTLY) else ()
+        return tuple(member.key for member in named)
 
     @functools.cached_property
     def where(self) -> pd.DataFrame:

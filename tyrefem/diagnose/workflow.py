@@ -500,7 +500,8 @@ def _beside_discrepancies(searched: Searched, ranking: Ranking, *, law_replaced:
     if len(revision.members) > 1 and set(revision.members) & set(allowed):
         together = fit_beside(problem, robust.models[0], searched.fit_of(problem.ordered(revision.members)))
         idle = tuple(each for each in not_asked_for(problem, together) if each not in allowed)
-        revision = revised(robust, heat=heat, idle=idle)
+        robust = replace(robust, idle=idle)
+        revision = revised(robust, heat=heat)
     judgement = judgement.revised(revision.verdict, revision.reasons, revision.doubts)
     ranking = replace(ranking, judgement=judgement, robustness=robust)
     return ranking, Partly(problem, revision.members, robust, together) if revision.members else None

@@ -309,7 +309,7 @@ def _priors(d: DiagnosisData) -> list[str]:
         f"{sum(change.decides for change in d.prior_sensitivity)} of {len(d.prior_sensitivity)} change the verdict or "
         "its names."
     )
-    return [first, *prior_words(d.prior_sensitivity, d.verdict)]
+    return [first, *prior_words(d.prior_sensitivity, d.verdict, d.named_effects)]
 
 
 def _assumed(d: DiagnosisData) -> list[str]:

@@ -108,7 +108,8 @@ class Robustness(Brief):
 
     ``models``: the models, the most probable first. ``laws``: other strain laws that were tried, without a probability.
     ``untried``: other strain laws that were not tried. ``log_evidence``: ln evidence of the data, over all models and
-    sets of effects with their priors. ``heat``: heat of unknown origin by itself; None if it was not fitted.
+    sets of effects with their priors. ``heat``: heat of unknown origin by itself; None if it was not fitted. ``idle``:
+    effects that are not needed where all that are about to be named are fitted together.
     """
 
     models: tuple[UnderDiscrepancy, ...]
@@ -116,6 +117,7 @@ class Robustness(Brief):
     untried: tuple[str, ...] = ()
     log_evidence: float = math.nan
     heat: FreeHeat | None = None
+    idle: Members = ()
 
     def _title(self) -> str:
         return f"{len(self.models)} models, {self.models[0].name} first"

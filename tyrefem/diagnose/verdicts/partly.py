@@ -40,7 +40,6 @@ def beside_discrepancies(
     *,
     law_replaced: bool = False,
     heat: FreeHeat | None = None,
-    idle: Members = (),
 ) -> Revision:
     """The verdict with what else may be wrong, and the effects that are part of the cause.
 
@@ -54,8 +53,7 @@ def beside_discrepancies(
     - *unexplained*: more is wrong, and there is no such effect.
 
     ``law_replaced``: the study's strain law was wrong, and another one stands in its place; nothing is "identified".
-    ``heat``: heat of unknown origin without and beside the effects that are about to be named. ``idle``: effects that
-    are not needed where all that are about to be named are fitted together.
+    ``heat``: heat of unknown origin without and beside the effects that are about to be named.
     """
     revision = Revision(judgement.verdict, judgement.reasons, judgement.doubts)
     if judgement.verdict == NO_GAP:
@@ -81,10 +79,10 @@ def beside_discrepancies(
             law = min(robustness.counted, key=lambda law: law.named.get(member.key, 0.0))
             reason = f"{member.key} is not named: with {law.words} it is less probable, or of the other sign"
             revision = revision._replace(reasons=(*revision.reasons, reason))
-    for member in (member for member in members if member in idle):
+    for member in (member for member in members if member in robustness.idle):
         reason = f"{member.key} is not named: beside the films' speed laws in full the data do not ask for it"
         revision = revision._replace(reasons=(*revision.reasons, reason))
-    members = tuple(member for member in members if member not in idle)
+    members = tuple(member for member in members if member not in robustness.idle)
     if single := tuple(member for member in members if member.runs):
         keys = " + ".join(member.key for member in single)
         runs = ", ".join(dict.fromkeys(run for each in single for run in each.runs))

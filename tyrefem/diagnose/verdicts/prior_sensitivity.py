@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -114,18 +114,29 @@ def prior_sensitivity(
     return tuple(changes)
 
 
-def prior_words(changes: Sequence[PriorChange], verdict: str) -> tuple[str, ...]:
-    """One sentence on every prior that decides the verdict; empty if none does."""
-    subject = "This name" if verdict in (IDENTIFIED, PARTLY) else "This verdict"
-    by_effect: dict[str, list[str]] = {}
-    for change in changes:
-        if change.decides:
-            by_effect.setdefault(change.effect, []).append(change_words(change))
+def prior_words(changes: Sequence[PriorChange], verdict: str, names: Collection[str] = ()) -> tuple[str, ...]:
+    """One sentence on every prior that decides the verdict; empty if none does.
+
+    A name rests on a prior only if it is lost with another one. ``names``: keys of the effects that the verdict names.
+    """
     subjects = {NO_EFFECT: "the prior of no effect", OUTSIDE: "the prior of causes outside the catalogue"}
-    return tuple(
-        f"{subject} rests on {subjects.get(effect, f'the prior of {effect}')}: {'; '.join(clauses)}."
-        for effect, clauses in by_effect.items()
-    )
+    sentences: dict[str, list[str]] = {}
+    for change in (change for change in changes if change.decides):
+        prior = subjects.get(change.effect, f"the prior of {change.effect}")
+        sentences.setdefault(_consequence(change, verdict, names).format(prior=prior), []).append(change_words(change))
+    return tuple(f"{sentence}: {'; '.join(clauses)}." for sentence, clauses in sentences.items())
+
+
+def _consequence(change: PriorChange, verdict: str, names: Collection[str]) -> str:
+    """What another prior does to the verdict or its names."""
+    if verdict not in (IDENTIFIED, PARTLY):
+        return "This verdict rests on {prior}"
+    after = set(change.best.split(" + "))
+    if change.verdict not in (IDENTIFIED, PARTLY) or not set(names) <= after:
+        return "This name rests on {prior}"
+    if after > set(names):
+        return "More would be named with another value of {prior}"
+    return "The verdict rests on {prior}, but the name does not"
 
 
 def change_words(change: PriorChange) -> str:

@@ -74,7 +74,7 @@ def effect_words(candidate: Candidate, fit: FittedSet, move: Movement | None = N
 def verdict_words(d: DiagnosisData) -> tuple[str, ...]:
     """The verdict in a few sentences, the most important first."""
     again = again_words(d) if d.verdict == IDENTIFIED else ()
-    priors = () if d.verdict == UNEXPLAINED else prior_words(d.prior_sensitivity, d.verdict)
+    priors = () if d.verdict == UNEXPLAINED else prior_words(d.prior_sensitivity, d.verdict, d.named_effects)
     conformal = () if d.conformal is None else (d.conformal.words(d.judgement.ranking),)
     return (*law_sentences(d), *_verdict_sentences(d), *conformal, *priors, *noise_words(d), *again)
 
