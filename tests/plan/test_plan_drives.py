@@ -51,8 +51,8 @@ def test_the_factor_on_a_phase_s_speed_is_that_of_this_phase() -> None:
     limits = {"drive.phases.1.speed": ["10 mph", "30 mph"], "drive.phases.phase 2.speed": ["40 mph", "50 mph"]}
     study = tf.study("hidden-effect", COARSE).replace({"drive.phases": phases, "measured": [], "plan.limits": limits})
     ratios = {drive.name: drive.ratios["phases.phase 2.speed"] for drive in candidate_drives(study)}
-    assert ratios["1 speed 10 mph, phase 2 speed 50 mph"] == pytest.approx(1.25)
-    assert ratios["1 speed 30 mph, phase 2 speed 40 mph"] == pytest.approx(1.0)
+    assert ratios["phase 1 speed 10 mph, phase 2 speed 50 mph"] == pytest.approx(1.25)
+    assert ratios["phase 1 speed 30 mph, phase 2 speed 40 mph"] == pytest.approx(1.0)
 
 
 def test_longer_runs_cost_more_with_a_cost_per_hour() -> None:

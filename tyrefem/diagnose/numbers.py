@@ -36,6 +36,15 @@ def percent(probability: float) -> str:
     return f"{100 * probability:.0f} %" if probability >= 0.1 else f"{100 * probability:.1f} %"
 
 
+def chance(log_odds: float) -> float:
+    """A probability from ln odds.
+
+    >>> round(chance(3.0), 3), chance(-1e4)
+    (0.953, 0.0)
+    """
+    return 1.0 / (1.0 + math.exp(min(-log_odds, 700.0)))
+
+
 def at_least(probability: float) -> str:
     """A lower limit of a probability as text.
 

@@ -48,10 +48,11 @@ class CandidateDrive(Brief):
 def quantity_name(key: str) -> str:
     """A key of the drive in words.
 
-    >>> quantity_name("phases.rolling.road_temperature")
-    'rolling road temperature'
+    >>> quantity_name("phases.rolling.road_temperature"), quantity_name("phases.1.speed")
+    ('rolling road temperature', 'phase 1 speed')
     """
-    return key.removeprefix("phases.").replace(".", " ").replace("_", " ")
+    words = key.removeprefix("phases.").replace(".", " ").replace("_", " ")
+    return f"phase {words}" if words != key and not words[:1].isalpha() else words
 
 
 def candidate_drives(study: StudyData) -> tuple[CandidateDrive, ...]:

@@ -12,7 +12,7 @@ from tyrefem.brief import Brief
 from tyrefem.diagnose.data.residuals import Residuals
 from tyrefem.diagnose.forward.forward_model import Places
 from tyrefem.diagnose.heat.sources import Place
-from tyrefem.diagnose.unknowns.heat_patches import ALL_LAYERS, SURFACES
+from tyrefem.diagnose.unknowns.heat_patches import ALL_LAYERS, INNER, OUTER, RIM, SURFACES
 from tyrefem.diagnose.unknowns.unknown import Unknown, of_effect
 from tyrefem.effects import catalogue
 from tyrefem.inputs.study import StudyData
@@ -31,6 +31,10 @@ EVERYWHERE = "all regions"
 WHOLE_SURFACES = {
     "whole tread surface": "tread", "whole sidewall surface": "sidewall", "whole outer surface": "outer",
     "whole inner surface": "inner",
+}  # fmt: skip
+#: Surface of the tyre at which a film, or the flux through a whole surface, acts.
+SURFACE_OF = dict.fromkeys(("road", "outside_air", "tread_air"), OUTER) | {"contained_air": INNER, "rim": RIM} | {
+    name: INNER if surface == "inner" else OUTER for name, surface in WHOLE_SURFACES.items()
 }  # fmt: skip
 
 
@@ -54,6 +58,11 @@ class LawPlace(Brief):
     def inside(self) -> bool:
         """Whether it is heat in the rubber, which acts while the tyre rolls."""
         return self.kind in (HEAT, LOSS)
+
+    @property
+    def surface(self) -> str:
+        """The surface through which it flows; empty for heat in the rubber."""
+        return "" if self.inside else SURFACE_OF.get(self.where, self.where)
 
 
 def law_place(place: Place, unknown: Unknown) -> LawPlace:

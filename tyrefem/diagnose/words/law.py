@@ -6,13 +6,13 @@ import math
 from typing import TYPE_CHECKING
 
 from tyrefem.diagnose.heat.courses import BEGINS, ENDS, PHASE, RUN
-from tyrefem.diagnose.heat.sources import CLEAR
+from tyrefem.diagnose.heat.sources import CLEAR, STATED
 from tyrefem.diagnose.law.places import FILM, FLUX, LOSS, UNITS, WHOLE_SURFACES, LawPlace
 from tyrefem.diagnose.law.terms import ABOVE, DEFLECTION, LOAD, NO_SWITCH, PRESSURE, REST, ROLLING, SPEED, WARM
-from tyrefem.diagnose.numbers import amount, percent
+from tyrefem.diagnose.numbers import amount, chance, percent
 from tyrefem.diagnose.unknowns.heat_patches import SURFACES, place_of
 from tyrefem.diagnose.verdicts.verdict import PARTLY
-from tyrefem.diagnose.words.heat import station_words
+from tyrefem.diagnose.words.heat import is_told, source_place, station_words
 
 if TYPE_CHECKING:
     from tyrefem.diagnose.diagnosis import DiagnosisData
@@ -52,7 +52,38 @@ def law_words(d: DiagnosisData) -> tuple[str, ...]:
     at = [reference_words(law, name) for name in law.fit.terms]
     part = f"It describes {percent(heat.share)} of what heat with a free course in every run describes"
     rest = [part] if heat.share < PART else []
-    return (f"{first}: {size}{' at ' + ', '.join(at) if at else ''}", *rest, *limits(law))
+    return (f"{first}: {size}{' at ' + ', '.join(at) if at else ''}", *rest, *place_words(d, heat), *limits(law))
+
+
+def place_words(d: DiagnosisData, heat: HeatLaw) -> list[str]:
+    """Which place to take if the law and the source of a free course are not on the same side, inside or a surface."""
+    over_time, side = d.missing.over_time, heat.place.surface
+    if over_time is None or not over_time.clear:
+        return []
+    source = max(over_time.clear, key=lambda each: 0.0 if each.move is None else abs(each.move.kelvin))
+    here = _side_words(heat.place)
+    if is_told(source):
+        if side == ("" if source.inside else source.where):
+            return []
+        share = chance(heat.lead)
+        names, taken = ("the law", here) if share >= 0.5 else ("the source", source_place(d, source))
+        return [
+            f"The law is {here}, the source that may act at any time is {source_place(d, source)}: the data prefer "
+            f"{names} ({percent(max(share, 1 - share))}), so take {taken} as the place"
+        ]
+    other = min((each for each in heat.ranking if each.place.surface != side), key=lambda e: e.below, default=None)
+    if other is None:
+        return []
+    share, there = chance(other.below - heat.ranking[0].below), _side_words(other.place)
+    told = share >= STATED
+    return [
+        f"Only the law tells the two apart: {here} {percent(share)}, not {there}" if told else
+        f"The law does not tell them apart either: {here} {percent(share)}, {there} {percent(1 - share)}"
+    ]  # fmt: skip
+
+
+def _side_words(place: LawPlace) -> str:
+    return f"at the {place.surface}" if place.surface else "inside the rubber"
 
 
 def limits(law: PlaceLaw) -> list[str]:
