@@ -39,7 +39,7 @@ def percent(probability: float) -> str:
 def chance(log_odds: float) -> float:
     """A probability from ln odds.
 
-    >>> round(chance(3.0), 3), chance(-1e4)
+    >>> round(chance(3.0), 3), round(chance(-1e4), 3)
     (0.953, 0.0)
     """
     return 1.0 / (1.0 + math.exp(min(-log_odds, 700.0)))
