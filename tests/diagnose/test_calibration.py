@@ -185,6 +185,14 @@ def test_false_alarms_come_as_often_as_stated() -> None:
     assert alarms["any of them"].count >= max(each.count for name, each in alarms.items() if name != "any of them")
 
 
+def test_without_held_out_runs_nothing_is_told_of_them() -> None:
+    of_layout = layout({"early": T**2}, (effect("early"),))
+    alone = replace(of_layout, held_out=of_layout.held_out[:0], heat_held_out=of_layout.heat_held_out[:0])
+    calibration = calibrate(alone, 4, 1, draws=50)
+    assert list(calibration.alarms) == ["misfit", "a pull", "all pulls", "any of them"]
+    assert not any("held-out" in line for line in calibration.words())
+
+
 def test_intervals_of_a_frequency() -> None:
     # Nothing in n cases: 1 - 0.025^(1/n).
     assert Frequency(0, 50).interval == pytest.approx((0.0, 1 - 0.025 ** (1 / 50)))

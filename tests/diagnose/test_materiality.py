@@ -12,9 +12,10 @@ from formula import STATED, Array, case, effect
 from hidden import RUNS
 from hidden import Case as HiddenCase
 
+from tyrefem.diagnose.data.runs import MeasuredDrive, MeasuredSensor
 from tyrefem.diagnose.fitting.criterion import LogEvidence
 from tyrefem.diagnose.fitting.exhaustive import Exhaustive
-from tyrefem.diagnose.fitting.materiality import movements
+from tyrefem.diagnose.fitting.materiality import largest_change, movements
 from tyrefem.diagnose.fitting.selection import SelectionProblem
 from tyrefem.diagnose.unknowns.candidates import SetPrior
 from tyrefem.diagnose.verdicts.verdict import IDENTIFIED, NO_GAP, Judgement, judge, ranked, without_immaterial
@@ -74,3 +75,11 @@ def test_what_an_effect_moves_stands_in_record_and_words(case: HiddenCase) -> No
     record = json.loads((case.folder / "verdict.json").read_text(encoding="utf-8"))
     assert record["effects"][0]["moves"] == {"largest_K": move.kelvin, "sensor": move.sensor, "run": move.run}
     assert f"moves readings by up to {move.kelvin:+.1f} K (crown-outer, {move.run})" in verdict_words(case.diagnosis)[0]
+
+
+def test_an_effect_without_which_no_tyre_is_possible_is_told_without_kelvins() -> None:
+    drive = MeasuredSensor("crown", np.arange(2.0), 1.0, 0.0, 1.0, 2, measured=np.zeros(2))
+    runs = (MeasuredDrive("fast", {}, False, (drive,)),)
+    move = largest_change(runs, [np.array([1.0, np.nan])])
+    assert move.words == "cannot be left out, as no tyre can be computed without it (fast)"
+    assert largest_change(runs, [np.array([1.0, -2.0])]).words == "moves readings by up to -2.0 K (crown, fast)"

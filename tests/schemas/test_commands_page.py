@@ -83,3 +83,8 @@ def test_deep_keys_of_a_diagnosis_are_in_the_schema() -> None:
     law = schema["properties"]["missing_heat"]["properties"]["law"]["properties"]
     assert law["exponents"]["items"]["properties"]["mean"]["description"] == "Exponent."
     assert law["switch_probabilities"]["additionalProperties"] == {"not": {"type": "object"}}
+
+
+def test_the_page_of_the_diagnosis_names_every_key_of_its_record() -> None:
+    page = make_commands_page.PAGE.with_name("diagnosis.md").read_text(encoding="utf-8")
+    assert [key for key in ANSWERS["diagnose"] if f"`{key}`" not in page] == []

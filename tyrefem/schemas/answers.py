@@ -106,7 +106,7 @@ ANSWERS: dict[str, Keys] = {
         "strain_laws": "list: Other strain laws.", "better_strain_law": "table?: A strain law that fits better.",
         "conformal": "table?: Set with known coverage.", "prior_sensitivity": "list: Other priors and their verdicts.",
         "where": "table?: Where measurement and study disagree most.",
-        "next_experiment": "table: What to measure next.", "amended_study": "text: The amended study as TOML.",
+        "next_experiment": "table: What to measure next.", "amended_study": "text: File of the amended study.",
         "changes": "list: Numbers of the amended study.", "missing_heat": "table?: Heat of unknown origin.",
         "again": "list: Further rounds.", "runs": "list: The measured runs.",
         "numerics": "table: Mesh and assumptions.", "reduced": "table: Certificates of the reduced models.",

@@ -29,7 +29,9 @@ class Movement(Brief):
 
     @property
     def words(self) -> str:
-        """The change with sensor and run."""
+        """The change with sensor and run; infinite if no tyre is possible without the effect."""
+        if not math.isfinite(self.kelvin):
+            return f"cannot be left out, as no tyre can be computed without it ({self.run})"
         decimals = 1 if abs(self.kelvin) >= 1 else 2
         return f"moves readings by up to {self.kelvin:+z.{decimals}f} K ({self.sensor}, {self.run})"
 

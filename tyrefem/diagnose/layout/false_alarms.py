@@ -15,6 +15,8 @@ from tyrefem.diagnose.layout.linear_layout import LinearLayout
 Array = NDArray[np.float64]
 #: Draws that are computed at once.
 BATCH = 2000
+#: Criterion by the held-out runs.
+HELD_OUT = "held-out runs"
 
 
 @dataclass(frozen=True)
@@ -60,7 +62,7 @@ def false_alarms(layout: LinearLayout, draws: int, seed: int) -> dict[str, Frequ
     """Criterion -> share of draws that it rejects although nothing is missing and all priors are right.
 
     d = J x + e with x ~ N(0, S^2), e ~ N(0, 1), fitted without effects: misfit |d - J x|^2 + |x/s|^2 (chi-squared,
-    exact for a linear model), largest pull, all pulls together, and the prediction of the held-out runs.
+    exact for a linear model), largest pull, all pulls together, and, if runs are held out, their prediction.
     """
     settings, design = layout.settings, layout.design
     n = design.nuisance
@@ -69,8 +71,9 @@ def false_alarms(layout: LinearLayout, draws: int, seed: int) -> dict[str, Frequ
     covariance = np.asarray(np.linalg.inv(np.eye(n) + J.T @ J), dtype=np.float64)
     root = np.linalg.cholesky(np.eye(len(held_out)) + held_out @ covariance @ held_out.T)
     rng = np.random.default_rng([seed, draws])
-    names = ("misfit", "a pull", "all pulls", "held-out runs")
-    counts, union, done = dict.fromkeys(names, 0), 0, 0
+    counts, union, done = dict.fromkeys(("misfit", "a pull", "all pulls"), 0), 0, 0
+    if len(held_out):
+        counts[HELD_OUT] = 0
     while done < draws:
         size = min(BATCH, draws - done)
         x = rng.normal(size=(n, size))
@@ -83,12 +86,13 @@ def false_alarms(layout: LinearLayout, draws: int, seed: int) -> dict[str, Frequ
             "misfit": chdtrc(len(J), misfit) < settings.rejected_p,
             "a pull": (np.abs(z) > settings.largest_pull).any(axis=0),
             "all pulls": pulls_probability((z**2).sum(axis=0), covariance) < settings.rejected_p,
-            "held-out runs": chdtrc(max(len(rest), 1), (w**2).sum(axis=0)) < settings.rejected_p,
         }
+        if HELD_OUT in counts:
+            rejected[HELD_OUT] = chdtrc(len(rest), (w**2).sum(axis=0)) < settings.rejected_p
         for name, each in rejected.items():
             counts[name] += int(each.sum())
         union += int(np.any(list(rejected.values()), axis=0).sum())
         done += size
-    stated = {"misfit": settings.rejected_p, "all pulls": settings.rejected_p, "held-out runs": settings.rejected_p}
+    stated = dict.fromkeys(("misfit", "all pulls", HELD_OUT), settings.rejected_p)
     result = {name: Frequency(count, draws, stated.get(name)) for name, count in counts.items()}
     return result | {"any of them": Frequency(union, draws)}
