@@ -87,4 +87,4 @@ def test_deep_keys_of_a_diagnosis_are_in_the_schema() -> None:
 
 def test_the_page_of_the_diagnosis_names_every_key_of_its_record() -> None:
     page = make_commands_page.PAGE.with_name("diagnosis.md").read_text(encoding="utf-8")
-    assert [key for key in ANSWERS["diagnose"] if f"`{key}`" not in page] == []
+    assert [key for key in ANSWERS["diagnose"] if f"`{key.rstrip('*')}`" not in page] == []
