@@ -11,12 +11,11 @@ from tyrefem.boundaries import CAL, FILM, Law
 from tyrefem.cards import FilmCoefficient, Warmth
 from tyrefem.cards.plausible import AIR_FILM, GAS_HEAT
 from tyrefem.plugins import Range, Trial, trial
-from tyrefem.quantity import Unit
+from tyrefem.quantity import KELVIN, Unit
 
 #: Specific gas constant of dry air, J/kg/K (R / M = 8.314462618 / 0.0289652; M: CIPM-2007).
 GAS_CONSTANT = 8.314462618 / 0.0289652
 ATMOSPHERE = 101325.0
-KELVIN = 273.15
 
 
 class ContainedAirLaw(Law):

@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from typing import Any
 
 from tyrefem import library
 from tyrefem.cards.entries import entry_number
 from tyrefem.errors import InputError, nearest
-from tyrefem.inputs.deviations import ZERO, has_arbitrary_zero
+from tyrefem.inputs.deviations import has_arbitrary_zero
 from tyrefem.inputs.drive_table import EXCLUSIVE_KEYS
-from tyrefem.quantity import parse, written
+from tyrefem.quantity import KELVIN, amount_parts, parse, written
 from tyrefem.sizes import completed_materials, is_size, with_numbers
 
 #: Tables whose text value names a card: a change of a value below it overrides the card's value.
 _REFERENCES = {"section": "section", "materials.*": "material"}
-_AMOUNT = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)(.*)$", re.DOTALL)
 
 
 def changed(data: Mapping[str, Any], key: str, value: Any) -> dict[str, Any]:
@@ -256,12 +254,13 @@ def scaled(value: Any, factor: float, significant: int | None = None) -> Any:
         if value and all(isinstance(row, list) and row for row in value):
             return [[row[0], *scaled(row[1:], factor, significant)] for row in value]
         return [scaled(entry, factor, significant) for entry in value]
-    match = _AMOUNT.match(value) if isinstance(value, str) else None
-    if match is None:
+    amount, unit = amount_parts(value) or ("", "")
+    if not amount:
         raise InputError(f"{value!r} is not a number that can be scaled")
-    if has_arbitrary_zero(match[2]):
-        return f"{(parse(value, 'degC') + ZERO) * factor - ZERO:.{significant or 12}g} degC"
-    return f"{float(match[1]) * factor:.{significant or 12}g}{match[2]}"
+    if has_arbitrary_zero(unit):
+        return f"{(parse(value, 'degC') + KELVIN) * factor - KELVIN:.{significant or 12}g} degC"
+    # The unit stands as far from the number as it was written.
+    return f"{float(amount) * factor:.{significant or 12}g}{value.strip()[len(amount) :]}"
 
 
 def check_factor(value: Any) -> None:
@@ -269,7 +268,6 @@ def check_factor(value: Any) -> None:
     if isinstance(value, Mapping) and "unit" in value:
         unit, shown = str(value["unit"]), f"{value.get('values')} {value['unit']}"
     else:
-        match = _AMOUNT.match(value) if isinstance(value, str) else None
-        unit, shown = "" if match is None else match[2], repr(value)
+        unit, shown = (amount_parts(value) or ("", ""))[1], repr(value)
     if has_arbitrary_zero(unit):
         raise InputError(f"{shown} is a temperature: a share of it means nothing; give values, or an sd like '2 K'")

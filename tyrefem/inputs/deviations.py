@@ -11,12 +11,9 @@ from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import CoreSchema
 
 from tyrefem.errors import InputError
-from tyrefem.quantity import Unit, parse
+from tyrefem.quantity import KELVIN, Unit, amount_parts, parse
 
-#: 0 degC, K.
-ZERO = 273.15
 SHARE = Unit("1", gt=0, lt=1)
-_AMOUNT = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*$", re.DOTALL)
 _SCALES = re.compile(r"deg[CF]|degree_(Celsius|Fahrenheit)|celsius|fahrenheit|°\s?[CF]")
 
 
@@ -30,8 +27,8 @@ class Deviation:
         except InputError:
             if not isinstance(value, str):
                 raise
-            match = _AMOUNT.match(value)
-            if match is None or not match[2] or "%" in match[2]:
+            _, unit = amount_parts(value) or ("", "")
+            if not unit or "%" in unit:
                 raise
             return value
 
@@ -67,16 +64,15 @@ def share_of(written: Any, stated: float | str) -> tuple[float, Any]:
     """
     if not isinstance(stated, str):
         return stated, written
-    match = _AMOUNT.match(written) if isinstance(written, str) else None
-    if match is None or not match[2]:
+    amount, unit = amount_parts(written) or ("", "")
+    if not unit:
         what = "a table" if isinstance(written, list | Mapping) else f"{written!r}"
         raise InputError(f"is {what}: its standard deviation is a share, for example '2 %', not {stated!r}")
-    unit = match[2]
     if has_arbitrary_zero(unit):
-        number, sd = parse(written, "degC") + ZERO, parse(stated, "delta_degC")
+        number, sd = parse(written, "degC") + KELVIN, parse(stated, "delta_degC")
         written = f"{number:.12g} K"
     else:
-        number, sd = abs(float(match[1])), parse(stated, "delta_degC" if unit in ("K", "kelvin") else unit)
+        number, sd = abs(float(amount)), parse(stated, "delta_degC" if unit in ("K", "kelvin") else unit)
     if not 0 < sd < number:
         raise InputError(f"{stated!r} is out of range: a standard deviation is between 0 and the number, {written}")
     return sd / number, written

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.errors import InputError, nearest
-from tyrefem.quantity import parse
+from tyrefem.quantity import KELVIN, parse
 
 TIME_UNITS = {"s": 1.0, "ms": 1e-3, "min": 60.0, "h": 3600.0}
 TEMPERATURE_UNITS = ("degC", "degF", "K")
@@ -155,7 +155,7 @@ NO_READING = frozenset(("", "nan", "na", "n/a", "#n/a", "null", "none", "-", "--
 #: degC; range of readings at a tyre. No air at the ground was colder than -89 degC, and a brake disc glows at 900 degC;
 #: rubber chars at half of that. Loggers write codes beyond it (-200, 999.9, 1372, 9999) for an open thermocouple.
 COLDEST, HOTTEST = -90.0, 900.0
-ABSOLUTE_ZERO = -273.15
+ABSOLUTE_ZERO = -KELVIN
 _NUMBER = re.compile(r"[-+]?(?:\d+[.,]?\d*|[.,]\d+)(?:[eE][-+]?\d+)?", re.ASCII)
 _PLAIN = re.compile(r"[0-9.eE+\-\n]*")
 

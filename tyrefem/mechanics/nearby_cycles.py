@@ -5,7 +5,6 @@ from __future__ import annotations
 import functools
 import hashlib
 import math
-import re
 from collections.abc import Callable, Sequence
 from dataclasses import astuple, dataclass, field, replace
 from pathlib import Path
@@ -22,11 +21,11 @@ from tyrefem.mechanics.rolling.friction_rings import CHANGING
 from tyrefem.mechanics.strain_cycle import solved_case
 from tyrefem.mechanics.worn_sections import SectionWear
 from tyrefem.output import atomic_path
+from tyrefem.quantity import amount_parts
 
 if TYPE_CHECKING:
     from tyrefem.inputs.study import StudyData
 
-_AMOUNT = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*$", re.DOTALL)
 Solved = tuple[LoadCase, PointEnergies]
 #: Share of the largest density below which the ratio of two densities goes to 1.
 LEAST_SHARE = 1e-4
@@ -269,8 +268,8 @@ def _amount(value: Any) -> tuple[float, str]:
         # The numbers of a table change by one factor: the last cell gives it.
         return _amount(value[-1])
     if isinstance(value, str):
-        match = _AMOUNT.match(value)
-        return (float(match[1]), match[2]) if match else (0.0, value)
+        amount = amount_parts(value)
+        return (float(amount[0]), amount[1]) if amount else (0.0, value)
     return float(value), ""
 
 

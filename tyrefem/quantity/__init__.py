@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 from tyrefem.errors import InputError
 from tyrefem.quantity.factors import FACTORS, TEMPERATURES
+from tyrefem.quantity.factors import KELVIN as KELVIN
 
 if TYPE_CHECKING:
     import pint
@@ -97,10 +98,20 @@ def _parse(value: object, unit: str) -> float:
     if not math.isfinite(result):
         raise InputError(f"{value!r} is too large to be a number; expected {wanted}")
     if unit == "degC":
-        if result < -273.15 - 1e-9:
+        if result < -KELVIN - 1e-9:
             raise InputError(f"{value!r} is below absolute zero")
         return round(result, 10)
     return result
+
+
+def amount_parts(value: object) -> tuple[str, str] | None:
+    """Number and unit of a written quantity, as they are written; None for what is no such text.
+
+    >>> amount_parts(" 20 mph"), amount_parts("2"), amount_parts("soft")
+    (('20', 'mph'), ('2', ''), None)
+    """
+    match = _NUMBER.match(value) if isinstance(value, str) else None
+    return None if match is None else (match[1], match[2])
 
 
 def _usual(magnitude: float, text: str, unit: str) -> float | None:
@@ -124,10 +135,10 @@ def _split(value: object, unit: str, wanted: str) -> tuple[float, str]:
             raise InputError(f"{str(value)[:20]}... is too large to be a number; expected {wanted}") from None
     if hasattr(value, "magnitude") and hasattr(value, "units"):
         return float(value.magnitude), str(value.units)
-    match = _NUMBER.match(value) if isinstance(value, str) else None
-    if match is None:
+    amount = amount_parts(value)
+    if amount is None:
         raise InputError(f"{value!r} is not {wanted}")
-    return float(match[1]), match[2]
+    return float(amount[0]), amount[1]
 
 
 def written(value: Any) -> Any:

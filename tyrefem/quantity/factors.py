@@ -5,6 +5,8 @@ Written by tools/make_unit_factors.py from pint's own numbers.
 
 from __future__ import annotations
 
+#: 0 degC, K.
+KELVIN = 273.15
 #: Unit of a card -> unit as written -> factor.
 FACTORS: dict[str, dict[str, float]] = {
     "1": {
@@ -224,4 +226,4 @@ FACTORS: dict[str, dict[str, float]] = {
     },
 }
 #: Temperature as written -> factor and offset of its value in degC.
-TEMPERATURES = {"degC": (1.0, 0.0), "degF": (5 / 9, -160 / 9), "K": (1.0, -273.15)}
+TEMPERATURES = {"degC": (1.0, 0.0), "degF": (5 / 9, -160 / 9), "K": (1.0, -KELVIN)}

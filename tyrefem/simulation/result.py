@@ -10,13 +10,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from tyrefem.boundaries.contained_air import ATMOSPHERE, KELVIN
+from tyrefem.boundaries.contained_air import ATMOSPHERE
 from tyrefem.brief import SHOWN, Brief
 from tyrefem.conduction.field import History
 from tyrefem.conduction.points import OutsideMeshError, as_points
 from tyrefem.errors import InputError
 from tyrefem.geometry.meshing.sagitta import snapped
 from tyrefem.geometry.wall import inside_mesh, wall_of
+from tyrefem.quantity import KELVIN
 from tyrefem.simulation.effect_states import StateHistory
 from tyrefem.simulation.heat_budget import HeatBudget, whole_tyre
 from tyrefem.simulation.phases import PhaseState, deep_contacts, phase_states

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.boundaries.contained_air import KELVIN
 from tyrefem.mechanics.cycle_schedule import CycleSchedule, KnotSolver, changes_cycle, ramp_knots, warming_knots
 from tyrefem.mechanics.footprint.pressed_tyre import mechanical_mesh
 from tyrefem.mechanics.rolling.roll import road_region
 from tyrefem.mechanics.strain_cycle import solved_case
+from tyrefem.quantity import KELVIN
 
 if TYPE_CHECKING:
     from tyrefem.inputs.loading import LoadCase

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
@@ -13,14 +12,13 @@ import numpy as np
 from tyrefem.errors import InputError
 from tyrefem.inputs.changes import check_factor, scaled, value_at
 from tyrefem.inputs.name_patterns import number_at
-from tyrefem.quantity import parse
+from tyrefem.quantity import amount_parts, parse
 from tyrefem.variants.card import VaryCard
 from tyrefem.variants.links import Links, Members, members
 
 if TYPE_CHECKING:
     from tyrefem.inputs.study import StudyData
 
-_AMOUNT = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*$", re.DOTALL)
 #: Significant digits of written values, so that a variant can be typed again.
 DIGITS = 9
 
@@ -260,8 +258,8 @@ def uncertain(study: StudyData, deviations: float) -> list[Varied]:
 
 
 def _listed(key: str, values: list[Any]) -> Varied:
-    amounts = [_AMOUNT.match(value) if isinstance(value, str) else None for value in values]
-    units = {match[2] for match in amounts if match}
+    amounts = [amount_parts(value) for value in values]
+    units = {each[1] for each in amounts if each}
     same = in_one_unit(values)
     for number, item in enumerate(same):
         if item in same[:number]:
@@ -277,12 +275,12 @@ def in_one_unit(values: Sequence[Any]) -> list[Any]:
     >>> in_one_unit(["10 mph", "4.4704 m/s", "10.0 mph"]), in_one_unit(["soft", "8 mm"])
     ([10.0, 10.0, 10.0], ['soft', 8.0])
     """
-    amounts = [_AMOUNT.match(value) if isinstance(value, str) else None for value in values]
-    unit = next((match[2] for match in amounts if match), "") or "1"
+    amounts = [amount_parts(value) for value in values]
+    unit = next((each[1] for each in amounts if each), "") or "1"
     converted = []
-    for value, match in zip(values, amounts, strict=True):
+    for value, amount in zip(values, amounts, strict=True):
         try:
-            converted.append(float(f"{parse(value, unit):.12g}") if match else value)
+            converted.append(float(f"{parse(value, unit):.12g}") if amount else value)
         except InputError:
             converted.append(value)
     return converted
@@ -295,10 +293,10 @@ def _amount(value: Any) -> tuple[float, str]:
         if not math.isfinite(value):
             raise InputError(f"{value!r} is not a finite number")
         return float(value), ""
-    match = _AMOUNT.match(value) if isinstance(value, str) else None
-    if match is None:
+    amount = amount_parts(value)
+    if amount is None:
         raise InputError(f"{value!r} is not a number with its unit, e.g. '20 mph'")
-    return float(match[1]), match[2]
+    return float(amount[0]), amount[1]
 
 
 def _ratio(value: Any, nominal: Any) -> float:
@@ -323,8 +321,8 @@ def factor_of(value: Any) -> float | None:
     >>> factor_of("1.1 x"), factor_of("1.1 mm")
     (1.1, None)
     """
-    match = _AMOUNT.match(value) if isinstance(value, str) else None
-    return float(match[1]) if match is not None and match[2] == "x" else None
+    amount = amount_parts(value)
+    return float(amount[0]) if amount is not None and amount[1] == "x" else None
 
 
 def _times(value: Any, share: float) -> Any:
