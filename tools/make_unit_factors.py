@@ -54,6 +54,8 @@ def text() -> str:
         "",
         "from __future__ import annotations",
         "",
+        "#: 0 degC, K.",
+        "KELVIN = 273.15",
         "#: Unit of a card -> unit as written -> factor.",
         "FACTORS: dict[str, dict[str, float]] = {",
     ]
@@ -68,7 +70,7 @@ def text() -> str:
     lines += [
         "}",
         "#: Temperature as written -> factor and offset of its value in degC.",
-        'TEMPERATURES = {"degC": (1.0, 0.0), "degF": (5 / 9, -160 / 9), "K": (1.0, -273.15)}',
+        'TEMPERATURES = {"degC": (1.0, 0.0), "degF": (5 / 9, -160 / 9), "K": (1.0, -KELVIN)}',
         "",
     ]
     return "\n".join(lines)

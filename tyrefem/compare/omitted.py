@@ -22,8 +22,19 @@ def outside_note(experiment: Experiment, first: float, last: float, outside: int
     level = ERROR if 2 * outside > total else "Note: "
     return [
         f"{level}run '{experiment.name}': {outside} of {total} measured times lie outside the simulated span "
-        f"{first:g} to {last:g} s and are not compared"
+        f"{first:g} to {last:g} s and are not compared{_clock(experiment, first, last) if outside == total else ''}"
     ]
+
+
+def _clock(experiment: Experiment, first: float, last: float) -> str:
+    """What to write if the logger's clock is another one: the run fits into the span, but elsewhere."""
+    begin, end = (float(experiment.run.times[place]) for place in (0, -1))
+    if end - begin > last - first:
+        return ""
+    return (
+        f" (its clock runs from {begin:g} to {end:g} s: if the drive starts with it, add {first - begin:g} s to the "
+        "'time_offset' of its [[measured]] entry)"
+    )
 
 
 def within(study: StudyData, experiment: Experiment) -> NDArray[np.bool_]:
