@@ -75,9 +75,8 @@ def place_words(d: DiagnosisData, heat: HeatLaw) -> list[str]:
     if other is None:
         return []
     share, there = chance(other.below - heat.ranking[0].below), _side_words(other.place)
-    told = share >= STATED
     return [
-        f"Only the law tells the two apart: {here} {percent(share)}, not {there}" if told else
+        f"Only the law tells the two apart: {here} {percent(share)}, not {there}" if share >= STATED else
         f"The law does not tell them apart either: {here} {percent(share)}, {there} {percent(1 - share)}"
     ]  # fmt: skip
 
