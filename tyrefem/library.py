@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from tyrefem.cards import merged, read_toml
+from tyrefem.cards.file_kinds import is_another, other_file
 from tyrefem.errors import InputError, nearest
 from tyrefem.sizes import is_size, looks_like_size, section_of_size
 
@@ -70,6 +71,7 @@ def find(kind: str, name: str, near: Path | None = None) -> Path:
                 option = option / FILES[kind]
             if os.path.isfile(option):
                 return option
+        _refuse_folder(kind, options)
         study_of_size = f"; a size becomes one by: tyrefem new study '{name}'" if looks_like_size(name) else ""
         raise InputError(f"no {kind} file '{name}'{study_of_size if kind == 'study' else ''}")
     for root in roots(near):
@@ -78,7 +80,15 @@ def find(kind: str, name: str, near: Path | None = None) -> Path:
             return path_here
     if kind in FILES and os.path.isfile(path / FILES[kind]):
         return path / FILES[kind]
+    _refuse_folder(kind, [*(root / FOLDERS[kind] / name for root in roots(near)), path])
     raise InputError(f"no {kind} named '{name}'{nearest(name, names(kind, near))}")
+
+
+def _refuse_folder(kind: str, folders: list[Path]) -> None:
+    """Raise `InputError` for a folder with a file of another kind."""
+    other = other_file(kind, folders) if kind in FILES else None
+    if other is not None:
+        raise InputError(is_another(kind, *other), file=other[1])
 
 
 def _path(name: str) -> Path:

@@ -108,3 +108,27 @@ def test_what_the_library_knows_is_checked_by_name(
     assert main(["check", name]) == 0
     assert words in capfd.readouterr().out
     assert "did you mean" in refused("check", name[:-1])
+
+
+def test_a_file_of_another_kind_names_the_command_that_reads_it(here: Path, refused: Callable[..., str]) -> None:
+    shipped = library.shipped()
+    for kind, file, command in (
+        ("a laser rig", shipped / "studies/rig-trtlab/rig.toml", "tyrefem rig simulate"),
+        ("a thermal card", shipped / "studies/thermal-passenger/thermal.toml", "tyrefem thermal-card"),
+        ("a sweep", shipped / "studies/crown-angle/sweep.toml", "tyrefem sweep"),
+        ("a section", shipped / "geometry/nasa-22x5.5-8pr.toml", "tyrefem show section"),
+        ("a material card", shipped / "materials/nasa-tread.toml", "tyrefem show material"),
+    ):
+        words = f"{file}: is {kind}, not a study; try: {command} {file}"
+        assert words in refused("run", str(file))
+        if file.parent.parent.name == "studies":
+            assert words in refused("run", str(file.parent))
+            assert words in refused("run", file.parent.name)
+    study = shipped / "studies/nasa-22x5.5-8pr/study.toml"
+    assert f"is a study, not a laser rig; try: tyrefem run {study}" in refused("rig", "simulate", str(study))
+    assert f"is a study, not a thermal card; try: tyrefem run {study}" in refused("thermal-card", str(study))
+
+
+@pytest.mark.parametrize("empty", [["--out", ""], ["--out="]])
+def test_an_empty_folder_for_results_is_refused(refused: Callable[..., str], empty: list[str]) -> None:
+    assert "--out: is empty; give a path" in refused("run", "nasa-22x5.5-8pr", *empty)

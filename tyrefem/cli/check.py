@@ -99,11 +99,13 @@ def _table(path: Path) -> str:
 
 def _card(path: Path) -> str:
     from tyrefem.cards import read_toml
+    from tyrefem.cards.file_kinds import kind_of
 
     data: dict[str, Any] = read_toml(path)
     if not data:
         raise InputError("is empty", file=path)
-    if "laser" in data:
+    kind = kind_of(data)
+    if kind == "rig":
         from tyrefem.rig import RigCard
 
         rig = RigCard.check(data, path)
@@ -111,20 +113,20 @@ def _card(path: Path) -> str:
         parts = {"layer": rig.layers, "sensor": rig.sensors, "run": rig.runs}
         words = ", ".join(counted(len(part), noun) for noun, part in parts.items())
         return f"a laser rig, {words}, {_rig_tables(rig, path)}"
-    if "bodies" in data and "films" in data:
+    if kind == "thermal":
         from tyrefem.lumped.card import ThermalCard
 
         thermal = ThermalCard.check(data, path)
         bodies = f"{len(thermal.bodies)} bod{'y' if len(thermal.bodies) == 1 else 'ies'}"
         films, runs = counted(len(thermal.films), "film"), counted(len(thermal.runs), "run")
         return f"a thermal card of {bodies}, {films}, {runs}"
-    if isinstance(data.get("study"), str):
+    if kind == "sweep":
         from tyrefem.sweep.design import loaded
 
         sweep = loaded(str(path.resolve()))
         warn(sweep.study.warnings)
         return f"a sweep: {sweep.words}"
-    if "layers" in data or "line" in data:
+    if kind == "section":
         from tyrefem.geometry import load
 
         section = load(str(path.resolve()))
@@ -132,7 +134,7 @@ def _card(path: Path) -> str:
         return (
             f"a section, {section.overall_width * 1e3:.1f} mm wide, {section.outer_diameter * 1e3:.1f} mm in diameter"
         )
-    if "loss_tangent" in data or "conductivity" in data:
+    if kind == "material":
         from tyrefem.materials.card import material
 
         card = material(str(path.resolve()))

@@ -13,6 +13,7 @@ import sys
 import warnings
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from itertools import pairwise
 from pathlib import Path
 from types import ModuleType
 from typing import Annotated, Any
@@ -164,6 +165,7 @@ def run_command_line(arguments: list[str] | None) -> tuple[object, int]:
     try:
         with reading(), _warnings_shown():
             given = sys.argv[1:] if arguments is None else arguments
+            _refuse_empty_place(given)
             code = _command(given)(args=given, prog_name=NAME, standalone_mode=False)
     except InputError as error:
         return error, 2
@@ -174,6 +176,13 @@ def run_command_line(arguments: list[str] | None) -> tuple[object, int]:
     except Exception as error:
         return _handled_error(error)
     return None, code if isinstance(code, int) else 0
+
+
+def _refuse_empty_place(arguments: list[str]) -> None:
+    """Raise `InputError` for an empty ``--out``, as an unset variable of a shell gives: it would be this folder."""
+    values = {f"{option}={value}" for option, value in pairwise(arguments)} | set(arguments)
+    if "--out=" in values:
+        raise InputError("is empty; give a path, '.' for this folder, or leave the option out", field="--out")
 
 
 @contextmanager

@@ -26,13 +26,16 @@ def thermal_card(
     Measured plateau temperatures at given heat inputs and times of warm-up and cool-down go in.
     """
     from tyrefem.cards import read_toml
+    from tyrefem.cards.file_kinds import expect_kind
     from tyrefem.errors import InputError
     from tyrefem.lumped.card import ThermalCard
     from tyrefem.lumped.identification import identify
     from tyrefem.reports.thermal_card import FILES, words, write_files
 
     path = file / "thermal.toml" if file.is_dir() else file
-    card = ThermalCard.check(read_toml(path), path)
+    data = read_toml(path)
+    expect_kind("thermal", data, path)
+    card = ThermalCard.check(data, path)
     name = path.resolve().parent.name if path.name == "thermal.toml" else path.stem
     with (
         results_folder(out or Path("results") / f"{name}-thermal", "thermal-card", FILES, force=force) as folder,

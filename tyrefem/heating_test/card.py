@@ -15,6 +15,7 @@ from pydantic_core import CoreSchema
 
 from tyrefem import library
 from tyrefem.cards import Card, PositiveLength, Temperature, Text, read_toml
+from tyrefem.cards.file_kinds import expect_kind
 from tyrefem.cards.file_names import check_file_name
 from tyrefem.cards.plausible import CONDUCTIVITY, DENSITY, EMISSIVITY, SPECIFIC_HEAT, Plausible
 from tyrefem.errors import InputError, InputWarning, nearest
@@ -363,7 +364,9 @@ def load(name: str | Path) -> tuple[RigCard, Path]:
     ['tread', 'carcass']
     """
     file = find(name)
-    return RigCard.check(read_toml(file), file), file
+    data = read_toml(file)
+    expect_kind("rig", data, file)
+    return RigCard.check(data, file), file
 
 
 def beside(card: RigCard, file: Path) -> list[Path]:
