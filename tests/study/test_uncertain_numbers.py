@@ -244,3 +244,12 @@ def test_a_comparison_has_the_ambient_s_deviation() -> None:
     rows = comparison.inputs[comparison.inputs["key"] == "drive.ambient"]
     assert rows["relative_sd"].iloc[0] == pytest.approx(2 / (study.card.drive.phases[0].ambient.start + 273.15))
     assert 0 < rows["change_K"].max() <= 2.0
+
+
+def test_a_study_with_a_deviation_of_no_number_is_refused_as_it_is_read() -> None:
+    """A run does not use the table; without this a wrong name there would only show in a comparison."""
+    message = r"uncertainty\.drive\.laod: .*did you mean 'load'\?"
+    with pytest.raises(InputError, match=message):
+        tf.study(BIAS, {"uncertainty": {"drive.laod": "5 %"}})
+    with pytest.raises(InputError, match=message):
+        tf.study("nasa-campaign", {"uncertainty": {"drive.laod": "5 %"}}).campaign()

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 from tyrefem import library
 from tyrefem.cards import read_toml
+from tyrefem.cards.file_kinds import expect_kind
 from tyrefem.errors import InputError, nearest
 from tyrefem.inputs.changes import all_changed, check_changes_table
 from tyrefem.inputs.study_contents import StudyContents
@@ -60,8 +61,13 @@ class StudyData(StudyContents):
         changes = dict(changes or {})
         # A changed table of cases is set before its case is selected.
         first = changes if case is None else {key: changes.pop(key) for key in list(changes) if key == "cases"}
-        loaded = cls(stem, all_changed(read_toml(path), first), path, folder)
-        return loaded if case is None else loaded.case(case).replace(changes)
+        data = read_toml(path)
+        expect_kind("study", data, path)
+        loaded = cls(stem, all_changed(data, first), path, folder)
+        loaded = loaded if case is None else loaded.case(case).replace(changes)
+        if not loaded.is_campaign:  # the cases of a campaign are checked each
+            loaded.check_uncertainty()
+        return loaded
 
     # -- change ------------------------------------------------------------------------------------------------------
 
@@ -179,7 +185,9 @@ class StudyData(StudyContents):
             changed = self.replace(case.changes)
             data = {key: value for key, value in changed.data.items() if key != "cases"}
             data["title"] = f"{case.name}: {case.note}" if case.note else case.name
-            return type(self)(case.name, data, self.file, self.folder, changed)
+            study_of_case = type(self)(case.name, data, self.file, self.folder, changed)
+            study_of_case.check_uncertainty()
+            return study_of_case
         except InputError as error:
             of_study = error.file is None or error.file == self.file
             reason = InputError(error.message, field=error.field) if of_study else error

@@ -179,6 +179,11 @@ class StudyContents(Brief):
         """
         return uncertain_numbers(self)
 
+    def check_uncertainty(self) -> None:
+        """Raises `InputError` if the study has no number of a name in ``[uncertainty]``, or not such a deviation."""
+        if self.card.uncertainty:
+            _ = self.uncertain_numbers
+
     @functools.cached_property
     def uncertainty(self) -> dict[str, float]:
         """Dotted name of an uncertain number with influence -> relative standard deviation."""
