@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -202,3 +203,14 @@ def test_what_differs_from_the_file_is_known_by_dotted_names(small: Study) -> No
     assert set(changes) == {"mesh.size", "drive.load", "drive.phases", "boundaries.rim"}
     assert Study.load(str(small.file), changes).data == changed.data
     assert changes_of_file(Study.load(str(small.file))) == {}
+
+
+@pytest.mark.parametrize(
+    "entry", [("10 mph", "30 mph", 3), {"from": "10 mph", "to": "30 mph", "levels": 3}], ids=["tuple", "mapping"]
+)
+def test_a_slider_has_no_levels(small: Study, entry: Any) -> None:
+    with pytest.raises(InputError, match=r"vary\.drive\.speed: a slider has no levels"):
+        small.explore({"drive.speed": entry})
+    nested = small.replace({"explore": {"vary": {"drive": {"speed": {"from": "10 mph", "to": "30 mph", "levels": 3}}}}})
+    with pytest.raises(InputError, match=r"explore\.vary\.drive\.speed: a slider has no levels"):
+        nested.explore()

@@ -11,8 +11,11 @@ from hypothesis import strategies as st
 
 from tyrefem import study
 from tyrefem.api import Study
+from tyrefem.cards import read_toml
 from tyrefem.errors import InputError
+from tyrefem.library import find
 from tyrefem.quantity import parse
+from tyrefem.sweep.design import loaded
 from tyrefem.variants import task
 from tyrefem.variants.card import SweepCard
 from tyrefem.variants.plan import plan_of, planned
@@ -140,3 +143,40 @@ def test_a_swapped_card_does_not_wipe_out_what_varies_in_it(tyre: Study) -> None
     assert len({card.title for card in cards}) == 2
     with pytest.raises(InputError, match=r"'materials\.tread' varies as a whole, so a factor"):
         plan_of(tyre, box | {"materials.tread.loss_tangent.value": {"factor": [0.8, 1.2]}})
+
+
+@pytest.mark.parametrize(
+    ("entry", "options", "message"),
+    [
+        (("10 mph", "40 mph", 4), {"sample": "sobol", "count": 8}, r"levels: levels are those of a grid"),
+        (("10 mph", "40 mph", 4), {"optimise": {"minimise": "mass_kg"}}, r"levels: .*add sample = 'grid'"),
+        ({"values": ["10 mph", "20 mph"], "levels": 2}, {}, r"levels: goes with a range or a factor"),
+        (("10 mph", "40 mph"), {"seed": 2}, r"seed: is of a random sample, which sample = 'grid' is not"),
+        (
+            ("10 mph", "40 mph"),
+            {"seed": 2, "optimise": {"minimise": "mass_kg"}},
+            r"seed: .*that of the search is optimise\.seed",
+        ),
+    ],
+)
+def test_what_a_sample_does_not_use_is_refused(
+    tyre: Study, entry: object, options: dict[str, object], message: str
+) -> None:
+    with pytest.raises(InputError, match=message):
+        plan_of(tyre, {"drive.speed": entry}, **options)
+
+
+def test_another_sample_over_a_file_leaves_out_what_only_the_files_sample_has() -> None:
+    """The file's grid has levels, and its Sobol sample a number: a flag that changes the sample need not edit them."""
+    assert len(loaded("crown-angle", sample="sobol", count=8).plan.variants) == 8
+    names = SweepCard.check(read_toml(find("sweep", "eight-numbers"))).vary
+    fewest = {name: {"factor": [0.9, 1.1], "levels": 2} for name in names}
+    assert len(loaded("eight-numbers", sample="grid", vary=fewest).plan.variants) == 2**8
+    assert not loaded("belt-edge", optimise={"minimise": "mass_kg"}).card.sampled
+    with pytest.raises(InputError, match="levels are those of a grid"):
+        loaded(
+            "belt-edge",
+            sample="sobol",
+            count=8,
+            vary={"section.thickness_scale.shoulder-cushion": {"factor": [0.9, 1.1], "levels": 3}},
+        )

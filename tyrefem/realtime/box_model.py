@@ -33,6 +33,7 @@ from tyrefem.reduced.training import ReducedFineness, trained
 from tyrefem.reduced.training_rounds import Training
 from tyrefem.requirements import Requirements
 from tyrefem.simulation.estimate import RunEstimate
+from tyrefem.variants.card import flat
 from tyrefem.variants.plan import Plan, plan_of
 from tyrefem.variants.samples import changes_at
 from tyrefem.variants.schedulers import Here, Local, Scheduler
@@ -129,10 +130,12 @@ def explored(
     """
     NEEDS.check(study)
     choice = study.card.explore
+    ranges = vary or choice.vary or default_box(study)
     try:
+        _refuse_levels(ranges)
         plan = plan_of(
             study,
-            vary or choice.vary or default_box(study),
+            ranges,
             limits=limits or choice.limits or None,
             sample="sobol",
             count=1,
@@ -149,6 +152,13 @@ def explored(
     return box_model(
         plan, axes=pair, tolerance=tolerance or default_tolerance(study), scheduler=scheduler, progress=progress
     )
+
+
+def _refuse_levels(ranges: Mapping[str, Any]) -> None:
+    """Raise `InputError` for levels of a range: a slider has all its values."""
+    for key, entry in flat(dict(ranges)).items():
+        if (isinstance(entry, tuple) and len(entry) == 3) or (isinstance(entry, Mapping) and "levels" in entry):
+            raise InputError("a slider has no levels: give FROM:TO alone", field=f"vary.{key}")
 
 
 def default_tolerance(study: StudyData) -> float:

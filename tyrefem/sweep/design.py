@@ -22,7 +22,7 @@ from tyrefem.sweep.sobol_indices import Indices
 from tyrefem.sweep.sweep import Sweep, sweep
 from tyrefem.sweep.tornado import Tornado
 from tyrefem.variants.answers import check_answer
-from tyrefem.variants.card import SweepCard
+from tyrefem.variants.card import SweepCard, flat
 from tyrefem.variants.dask_cluster import ClusterLostError
 from tyrefem.variants.execution import Execution, ExecutionOptions
 from tyrefem.variants.plan import Plan, card_of, planned
@@ -257,8 +257,32 @@ def loaded(name: str, changes: Mapping[str, Any] | None = None, **options: Any) 
     for key, value in options.items():
         both = isinstance(value, Mapping) and isinstance(data.get(key), Mapping)
         data[key] = {**data[key], **value} if both else value
+    if {"sample", "optimise"} & set(options):
+        data = _of_other_sample(data, options)
     card = SweepCard.check(with_further_tables(data), path)
     try:
         return questions(card.load_study(path.parent, changes), card, path.parent)
     except InputError as error:
         raise error if error.file else error.within(file=path) from None
+
+
+def _of_other_sample(data: dict[str, Any], options: Mapping[str, Any]) -> dict[str, Any]:
+    """A sweep file's data without what belongs to the file's sample alone, where ``options`` give another.
+
+    Levels belong to a grid, number and seed to a random sample.
+    """
+    kept = dict(data)
+    chosen = kept.get("sample") or ("grid" if "optimise" not in kept else None)
+    if chosen in ("grid", "list"):
+        for key in ("count", "seed"):
+            if key not in options:
+                kept.pop(key, None)
+    if chosen != "grid" and isinstance(kept.get("vary"), Mapping):
+        given = options.get("vary") or {}
+        kept["vary"] = {
+            key: {part: value for part, value in entry.items() if part != "levels"}
+            if key not in given and isinstance(entry, Mapping)
+            else entry
+            for key, entry in flat(dict(kept["vary"])).items()
+        }
+    return kept

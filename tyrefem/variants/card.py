@@ -45,6 +45,9 @@ class VaryCard(Card):
             raise InputError("'from' and 'to' go together")
         if self.values is not None and not self.values:
             raise InputError("needs at least one value", field="values")
+        unused = {"levels", "scale"} & self.model_fields_set
+        if self.values is not None and unused:
+            raise InputError("goes with a range or a factor, not with 'values'", field=min(unused))
         if self.factor is not None and not 0 < self.factor[0] < self.factor[1]:
             raise InputError(f"must be two rising positive numbers, not {list(self.factor)}", field="factor")
         return self
@@ -207,6 +210,11 @@ class SweepCard(Card):
         return self.sample is not None or (self.varies and self.optimise is None)
 
     @property
+    def has_grid(self) -> bool:
+        """Is the sample a grid, whose size `VaryCard.levels` give?"""
+        return self.sampled and self.chosen == "grid"
+
+    @property
     def varies(self) -> bool:
         """Does any number vary?"""
         return bool(self.vary) or self.uncertain is not None
@@ -233,7 +241,20 @@ class SweepCard(Card):
                 raise InputError(f"there are as many variants as {made}; only the other samples take it", field="count")
         elif self.count is None:
             raise InputError(f"sample = '{self.sample}' needs a number of variants", field="count")
+        self._refuse_unused()
         return self
+
+    def _refuse_unused(self) -> None:
+        """Refuse levels without a grid, and a seed without random numbers."""
+        if not self.has_grid:
+            other = f"sample = '{self.sample}' has none" if self.sampled else "remove them, or add sample = 'grid'"
+            for key, entry in self.vary.items():
+                if "levels" in entry.model_fields_set:
+                    raise InputError(f"levels are those of a grid; {other}", field=f"vary.{key}.levels")
+        searches = self.optimise is not None and "seed" in self.optimise.model_fields_set
+        if "seed" in self.model_fields_set and self.chosen in ("grid", "list") and not searches:
+            search = "; that of the search is optimise.seed" if self.optimise is not None else ""
+            raise InputError(f"is of a random sample, which sample = '{self.chosen}' is not{search}", field="seed")
 
 
 def flat(data: dict[str, Any], before: str = "") -> dict[str, Any]:
