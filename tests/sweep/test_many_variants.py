@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import pytest
+from pyarrow import parquet
 
 from tyrefem import study
 from tyrefem.reports.sweep import ROWS_OF_VARIANTS, chosen_rows
@@ -144,6 +145,8 @@ def test_the_parts_of_a_table_are_the_table(tmp_path: Path) -> None:
     write_parts(swept.parts(64), tmp_path, "parts")
     assert (tmp_path / "parts.csv").read_bytes() == (tmp_path / "whole.csv").read_bytes()
     pd.testing.assert_frame_equal(pd.read_parquet(tmp_path / "parts.parquet"), swept.table)
+    units = parquet.read_schema(tmp_path / "parts.parquet").field("hottest_degC").metadata
+    assert units[b"unit"] == b"degC"
     assert list(swept.overview().columns) == [
         name for name in swept.table.columns if name not in ("hottest_region", "mass_kg")
     ]

@@ -7,8 +7,9 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
+from pyarrow import parquet
 
-from tyrefem import study
+from tyrefem import load, study
 from tyrefem.cli import main
 from tyrefem.errors import InputError
 from tyrefem.sweep.design import loaded
@@ -32,6 +33,15 @@ def test_a_grid_from_flags_to_tables_and_page(tmp_path: Path, capsys: pytest.Cap
     assert (fast > slow).all()
     same = pd.read_parquet(tmp_path / "sweep.parquet")
     assert same.columns.tolist() == table.columns.tolist()
+    schema = parquet.read_schema(tmp_path / "sweep.parquet")
+    units = {"drive.speed [mph]": b"mph", "hottest_degC": b"degC", "mass_kg": b"kg", "time_to_limit_s": b"s"}
+    assert {name: schema.field(name).metadata[b"unit"] for name in units} == units
+    assert schema.field("rolling_resistance_coefficient").metadata in (None, {})
+    # A variant is a name, as in a list of variants: text, from either file.
+    record = load(tmp_path)
+    assert same["variant"].tolist() == record.table("sweep")["variant"].tolist() == ["1", "2", "3", "4"]
+    (tmp_path / "sweep.parquet").unlink()
+    assert load(tmp_path).table("sweep")["variant"].tolist() == ["1", "2", "3", "4"]
     assert same["hottest_degC"].tolist() == pytest.approx(table["hottest_degC"].tolist(), rel=1e-8)
     summary = json.loads((tmp_path / "summary.json").read_text())
     assert summary["complete"]

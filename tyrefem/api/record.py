@@ -28,7 +28,7 @@ ANSWERS = (
 #: Beside ``isolability.json`` with ``--calibrate``: the answer's ``calibration``.
 CALIBRATION = "calibration.json"
 #: Columns of text: 01 is no number there, NA is a name, empty stays empty.
-TEXTS = ("run", "sensor", "phase", "case", "failure", "note")
+TEXTS = ("variant", "run", "sensor", "phase", "case", "failure", "note")
 #: Files of a study in such a folder.
 STUDIES = ("amended.toml", "study.toml")
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 #: End of a key -> unit; of two that fit, the longer one first.
 UNITS = {
-    "_W_m2_K": "W/m2/K", "_mm_per_1000_km": "mm per 1000 km", "_mg_per_km": "mg/km", "_rad_s": "rad/s",
+    "_W_m2_K": "W/m2/K", "_log10_km": "", "_mm_per_1000_km": "mm per 1000 km", "_mg_per_km": "mg/km", "_rad_s": "rad/s",
     "_m_rad": "m/rad", "_km_h": "km/h", "_m2_s": "m2/s", "_m_s": "m/s", "_N_m": "N/m", "_W_m3": "W/m3",
     "_W_m2": "W/m2", "_J_m3": "J/m3", "_J_m2": "J/m2", "_1_m": "1/m", "_m3": "m3", "_m2": "m2", "_degC": "degC",
     "_nats": "nats", "_Nm": "N m", "_Pa": "Pa", "_rad": "rad", "_km": "km", "_kg": "kg", "_Hz": "Hz", "_N": "N",

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from tyrefem.output import atomic_path
 from tyrefem.output.key_units import unit_of
@@ -13,14 +14,27 @@ if TYPE_CHECKING:
 
 
 def column_unit(column: str, table: pd.DataFrame) -> str:
-    """Unit of a column: from ``table.attrs["units"]``, or from its name; empty: none.
+    """Unit of a column: from ``table.attrs["units"]``, or from its name; empty: none, or a factor.
 
     >>> import pandas as pd
-    >>> column_unit("sliding_speed_m_s", pd.DataFrame()), column_unit("region", pd.DataFrame())
-    ('m/s', '')
+    >>> [column_unit(name, pd.DataFrame()) for name in ("sliding_speed_m_s", "region", "drive.speed [mph]", "tread [x]")]
+    ['m/s', '', 'mph', '']
     """
     stated: dict[str, str] = table.attrs.get("units", {})
+    in_heading = re.fullmatch(r".* \[([^\[\]]+)\]", column)
+    if column not in stated and in_heading is not None:
+        return "" if in_heading[1] == "x" else in_heading[1]
     return stated.get(column) or unit_of(column)
+
+
+def with_units(schema: Any, table: pd.DataFrame) -> Any:
+    """The schema of a table's Parquet file with the unit of each column in its metadata."""
+    import pyarrow
+
+    columns = [
+        field.with_metadata({"unit": unit}) if (unit := column_unit(field.name, table)) else field for field in schema
+    ]
+    return pyarrow.schema(columns, metadata=schema.metadata)
 
 
 def write_parquet(table: pd.DataFrame, path: Path) -> Path:
@@ -34,11 +48,7 @@ def write_parquet(table: pd.DataFrame, path: Path) -> Path:
     from pyarrow import parquet
 
     content = pyarrow.Table.from_pandas(table, preserve_index=False)
-    columns = [
-        field.with_metadata({"unit": unit}) if (unit := column_unit(field.name, table)) else field
-        for field in content.schema
-    ]
-    content = content.cast(pyarrow.schema(columns, metadata=content.schema.metadata))
+    content = content.cast(with_units(content.schema, table))
     with atomic_path(path) as temporary:
         parquet.write_table(content, temporary, compression="zstd")
     return path

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from tyrefem.brief import counted
 from tyrefem.inputs.study_plugins import plugin_summary
 from tyrefem.output import atomic_path, versions, write_json
+from tyrefem.reports.parquet import with_units, write_parquet
 from tyrefem.reports.sweep import FILES as LIST
 from tyrefem.reports.sweep import clear, earlier, write_page
 from tyrefem.reports.sweep_variants import FOLDER as VARIANT_FILES
@@ -73,11 +74,10 @@ def save(design: DesignData, folder: Path, *, pictures: bool = True) -> dict[str
 
 
 def write_table(table: pd.DataFrame, folder: Path, name: str) -> list[str]:
-    """Write a table as CSV and as Parquet; return the names of the files."""
+    """Write a table as CSV and as Parquet, there with units; return the names of the files."""
     with atomic_path(folder / f"{name}.csv") as temporary:
         table.to_csv(temporary, index=False, float_format="%.9g")
-    with atomic_path(folder / f"{name}.parquet") as temporary:
-        table.to_parquet(temporary, index=False)
+    write_parquet(table, folder / f"{name}.parquet")
     return [f"{name}.csv", f"{name}.parquet"]
 
 
@@ -97,7 +97,7 @@ def write_parts(parts: Iterator[pd.DataFrame], folder: Path, name: str) -> list[
             part.to_csv(lines, index=False, float_format="%.9g", header=schema is None)
             content = pyarrow.Table.from_pandas(part, schema=schema, preserve_index=False)
             if writer is None:
-                schema = _without_nulls(content.schema)
+                schema = with_units(_without_nulls(content.schema), part)
                 writer = opened.enter_context(parquet.ParquetWriter(binary, schema))
             writer.write_table(content.cast(schema))
     return [f"{name}.csv", f"{name}.parquet"]
