@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import subprocess
 import zipfile
+from ctypes import CFUNCTYPE, c_char_p, c_int, c_void_p, cast
 from dataclasses import astuple
 
 import fmpy
 import numpy as np
 import pytest
-from fmpy.fmi2 import FMU2Slave
+from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
 from fmpy.validation import validate_fmu
 
 from tyrefem.errors import InputError
@@ -133,6 +134,36 @@ def test_outside_the_box_is_an_error_or_the_edge(slave):
     slave.doStep(0.0, 1.0)
     assert slave.getReal([10]) == at_edge
     assert slave.getInteger([7]) == [0]
+
+
+def test_an_input_outside_the_box_is_told_in_the_units_of_the_description(unit, tmp_path):
+    description = fmpy.read_model_description(str(unit))
+    kinds = {variable.name: variable.unit for variable in description.modelVariables}
+    instance = FMU2Slave(
+        guid=description.guid,
+        unzipDirectory=fmpy.extract(str(unit), str(tmp_path)),
+        modelIdentifier="tyre",
+        instanceName="one",
+        fmiCallLogger=None,
+    )
+    messages: list[str] = []
+
+    def log(_environment, _name, _status, _category, _format, text):
+        messages.append(text.decode())
+
+    # The message is the argument of the format "%s".
+    formatted = CFUNCTYPE(None, c_void_p, c_char_p, c_int, c_char_p, c_char_p, c_char_p)(log)
+    callbacks = fmi2CallbackFunctions()
+    callbacks.logger = cast(formatted, fmi2CallbackLoggerTYPE)
+    instance.instantiate(callbacks=callbacks, loggingOn=True)
+    for number, (name, value) in enumerate(zip(INPUTS, (40.0, 1e9, 1e9, 999.0, -999.0), strict=True)):
+        instance.setReal(list(range(5)), list(astuple(HELD[0])))
+        instance.setReal([number], [value])
+        with pytest.raises(Exception, match="fmi2DoStep"):
+            instance.doStep(0.0, 1.0)
+        assert messages[-1].startswith(f"{name} = {value:.7g} {kinds[name]} is outside ")
+        assert messages[-1].endswith(f" {kinds[name]}, the certified range")
+    instance.freeInstance()
 
 
 def test_the_source_compiles_without_a_warning(unit, tmp_path):

@@ -441,6 +441,7 @@ EXPORT fmi2Status FMI(fmi2GetRealOutputDerivatives)(fmi2Component c, const fmi2V
 
 EXPORT fmi2Status FMI(fmi2DoStep)(fmi2Component c, fmi2Real now, fmi2Real dt, fmi2Boolean keep) {
     static const char *const names[INPUTS] = {"speed", "load", "pressure", "ambient", "road_temperature"};
+    static const char *const units[INPUTS] = {"m/s", "N", "Pa", "degC", "degC"};  /* as in modelDescription.xml */
     Tyre *t = c;
     State *s = &t->s;
     double ends[2][INPUTS];
@@ -457,8 +458,8 @@ EXPORT fmi2Status FMI(fmi2DoStep)(fmi2Component c, fmi2Real now, fmi2Real dt, fm
         for (int k = 0; k < 2; k++) {
             double value = s->inputs[i] + k * dt * s->slope[i];
             if (!(value >= low - near && value <= high + near)) {
-                snprintf(text, sizeof text, "%s = %g is outside %g to %g (SI, degC)%s", names[i], value, low, high,
-                         s->clamp ? ", its edge is taken" : "");
+                snprintf(text, sizeof text, "%s = %.7g %s is outside %.7g to %.7g %s, the certified range%s", names[i],
+                         value, units[i], low, high, units[i], s->clamp ? "; its edge is taken" : "");
                 if (!s->clamp || isnan(value)) {
                     say(t, fmi2Error, text);
                     return fmi2Error;
