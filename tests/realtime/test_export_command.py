@@ -27,8 +27,9 @@ STUDY = "nasa-22x5.5-8pr"
     [
         (["--out", "tyre.txt"], "must end with .npz"),
         (["--speed", "1:2:3"], "is not FROM:TO"),
-        (["--speed", "30 mph:10 mph"], "from a lower to a higher value"),
-        (["--load", "-1 kN:10 kN"], "tyrefem: --load: must be positive"),
+        (["--speed", "30 mph:10 mph"], "--speed: must be from a lower to a higher value, not 30 mph to 10 mph"),
+        (["--speed", "0 mph:2000 mph"], "--speed: 2000 mph: '894.08 m/s' is out of range: must be at most 400 m/s"),
+        (["--load", "-1 kN:10 kN"], "tyrefem: --load: must be positive, not -1 kN to 10 kN"),
         (["--pressure", "20 degC:30 degC"], "pressure"),
         (["--load", "10 kN:200 kN", "--set", "mesh.size=12 mm"], "deflects the tyre"),
         (["--tolerance", "0 K"], "must be positive"),

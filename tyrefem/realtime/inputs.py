@@ -83,12 +83,35 @@ def box_of(study: StudyData, given: Mapping[str, tuple[Any, Any]] | None = None)
                 raise error if error.field else error.within(field=name) from None
         else:
             low, high = _around(study, name)
+        written = _as_given(name, (given or {}).get(name, (low, high)))
         if not (np.isfinite(low) and np.isfinite(high) and low <= high):
-            raise InputError(f"must be from a lower to a higher value, not {low:g} to {high:g}", field=name)
+            raise InputError(f"must be from a lower to a higher value, not {' to '.join(written)}", field=name)
         if name in FACTORS and (low < 0 or (high <= 0 and name != "pressure")):
-            raise InputError(f"must be positive, not {low:g} to {high:g} {INPUTS[name]}", field=name)
+            raise InputError(f"must be positive, not {' to '.join(written)}", field=name)
         ranges[name] = low, high
-    return Box(ranges)
+    box = Box(ranges)
+    for name in given or {}:
+        _check_drives(study, box, name, _as_given(name, (given or {})[name]))
+    return box
+
+
+def _as_given(name: str, ends: Any) -> tuple[str, str]:
+    """Both ends of a range as a person gave them, numbers with the unit of the input."""
+    low, high = (end if isinstance(end, str) else f"{end:g} {INPUTS[name]}" for end in _pair(name, ends))
+    return low, high
+
+
+def _check_drives(study: StudyData, box: Box, name: str, written: tuple[str, str]) -> None:
+    """Raise `InputError` for an end of a range that the study's drive refuses."""
+    for place, text in zip((0.0, 1.0), written, strict=True):
+        places = np.full(len(NAMES), 0.5)
+        places[NAMES.index(name)] = place
+        try:
+            steady(box, places, 1.0).study(study)
+        except InputError as error:
+            if (error.field or "").rpartition(".")[2] != name:
+                raise
+            raise InputError(f"{text}: {error.message}", field=name) from None
 
 
 def _pair(name: str, given: Any) -> tuple[Any, Any]:
