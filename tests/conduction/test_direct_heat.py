@@ -125,3 +125,34 @@ def test_many_tangents_at_once_are_those_of_one() -> None:
     single, many = (tangents(base, times, history.values, gas, [other] * count).values for count in (1, 20))
     assert np.abs(single).max() > 0
     np.testing.assert_allclose(many, np.broadcast_to(single, many.shape), rtol=0, atol=1e-12 * np.abs(single).max())
+
+
+def cooled_face(mesh: Any, **changes: float) -> Conduction:
+    """A ring whose conductivity falls by half over 100 K, and that is rubbed the less the hotter its face is."""
+    p = {"k": 0.3, "heat": 2e5, "rubbing": 1200.0} | changes
+    material = Material(lambda T: (p["k"] * (1 - 0.005 * (T - 20.0)), 0.8 * p["k"] * (1 - 0.004 * (T - 20.0))), 2e6)
+    return Conduction(
+        mesh,
+        {"inside": material, "outside": material},
+        {
+            "outer": [Film(60.0, 20.0), Radiation(0.9, 20.0)],
+            "end": Flux(lambda x, t, T: p["rubbing"] * np.exp(-0.01 * (T - 20.0)), of_temperature=True),
+        },
+        {"inside": p["heat"]},
+    )
+
+
+@pytest.mark.parametrize("name", ["k", "heat", "rubbing"])
+def test_tangents_where_conductivity_and_flux_vary(name: str) -> None:
+    """Without their slopes over temperature these tangents are off by 8 to 23 %."""
+    mesh, value = ring(4), {"k": 0.3, "heat": 2e5, "rubbing": 1200.0}[name]
+    times = stage_times((0.0, 900.0), first=3.0, growth=1.4, longest=30.0)
+    base = cooled_face(mesh)
+    history = base.transient(times, 25.0, 1e-4)
+    assert 80.0 < history.values.max() < 140.0
+    step, h = 1e-4 * value, 0.02 * value
+    other = Perturbed(cooled_face(mesh, **{name: value + step}), step)
+    tangent = tangents(base, times, history.values, np.zeros((len(times), 0)), [other]).values[0]
+    runs = [cooled_face(mesh, **{name: value + x}).transient(times[::2], 25.0, 1e-4).values for x in (h, -h)]
+    wanted = (runs[0] - runs[1]) / (2 * h)
+    assert np.abs(tangent[::2] - wanted).max() < 0.005 * np.abs(wanted).max()

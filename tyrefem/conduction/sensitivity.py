@@ -17,6 +17,7 @@ from tyrefem.conduction.fixed_steps import GAMMA, StageSolver
 from tyrefem.conduction.operators import Operators
 from tyrefem.conduction.points import located
 from tyrefem.conduction.sources import SourceLoad
+from tyrefem.conduction.surface_loads import FluxLoad
 from tyrefem.conduction.terms import State
 from tyrefem.errors import InputError
 from tyrefem.threads import one_thread
@@ -94,7 +95,8 @@ def tangents(
     """Sensitivities along a known solution of ``base``.
 
     M ds/dt = -(dF/du) s + [F(y; p + step) - F(y; p)]/step - (dM/dp) du/dt is linear in s: all parameters share one
-    factorisation per step. dF/du contains conduction, films and the temperature slopes of sources and heat capacities.
+    factorisation per step. dF/du contains conduction, films and the temperature slopes of sources, fluxes,
+    conductivities and heat capacities.
 
     Parameters
     ----------
@@ -203,7 +205,7 @@ def _integrate(
             start = s + (1 - GAMMA) * h * slopes[0] if stage else s
             right = direct(t, y) - _linear(balance, start)
             guess = slopes[0] if stage else solve(right)
-            # The slope of sources and capacities is small compared with the rest: one correction of a guess is enough.
+            # This slope is small compared with the rest: one correction of a guess is enough.
             for _ in range(2):
                 hot = right.copy()
                 hot[:n] += slope @ (start[:n] + GAMMA * h * guess[:n])
@@ -223,7 +225,10 @@ def _linear(balance: HeatBalance, s: Array) -> Array:
 
 
 def _slope(balance: HeatBalance, t: float, y: State, rate: Array | None) -> csr_matrix:
-    """d(heat of the sources - M du/dt)/d(temperature), (n, n); rate: du/dt if M varies."""
+    """d(heat beside the linear part - M du/dt)/d(temperature), (n, n); rate: du/dt if M varies.
+
+    Sources, fluxes and conductivities that depend on temperature; films and radiation are in the linear part.
+    """
     data = np.zeros(balance.ops.nnz)
     for load in balance.loads:
         if isinstance(load, SourceLoad) and not load.static:
@@ -231,4 +236,10 @@ def _slope(balance: HeatBalance, t: float, y: State, rate: Array | None) -> csr_
     for capacity in balance.capacities.values():
         if not capacity.constant and rate is not None:
             data -= capacity.slope(y.u, rate, _BUMP)
-    return balance.ops.matrix(data)
+    slope = balance.ops.matrix(data)
+    for load in balance.loads:
+        if isinstance(load, FluxLoad) and load.of_temperature:
+            slope = slope + load.jacobian(t, y)
+    for conduction in balance.conduction:
+        slope = slope + conduction.slope(t, y)
+    return slope

@@ -57,3 +57,12 @@ class VariableConduction(Load):
             transposed @ diags(q.weight * rise * (slope @ y.u)) @ q.value
             for slope, transposed, rise in zip(q.slopes, q.slopes_t, rises, strict=True)
         )
+
+    def slope(self, t: float, y: State) -> csr_matrix:
+        """d(remainder)/du (n, n) at any state: `jacobian`, and what k has changed since the freeze."""
+        jacobian, q = self.jacobian(t, y), self.q
+        assert jacobian is not None
+        return jacobian - sum(
+            transposed @ diags(q.weight * (k - k0)) @ slope
+            for slope, transposed, k, k0 in zip(q.slopes, q.slopes_t, self.values(y.u), self.k0, strict=True)
+        )
