@@ -17,7 +17,7 @@ def column_unit(column: str, table: pd.DataFrame) -> str:
     """Unit of a column: from ``table.attrs["units"]``, or from its name; empty: none, or a factor.
 
     >>> import pandas as pd
-    >>> [column_unit(name, pd.DataFrame()) for name in ("sliding_speed_m_s", "region", "drive.speed [mph]", "tread [x]")]
+    >>> [column_unit(name, pd.DataFrame()) for name in ("sliding_speed_m_s", "region", "drive.speed [mph]", "soft [x]")]
     ['m/s', '', 'mph', '']
     """
     stated: dict[str, str] = table.attrs.get("units", {})
