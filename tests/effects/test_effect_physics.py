@@ -355,3 +355,25 @@ def test_what_changes_by_itself_does_not_claim_to_follow_the_drive() -> None:
     assert surroundings(drifting, 100.0) != surroundings(drifting, 0.0)
     # What acts on the heat alone leaves the surroundings as they are.
     assert tyre([{"name": "pressure-rise", "rise": 0.1}]).acting.follows_drive
+
+
+def test_wind_has_no_part_in_another_power_of_speed() -> None:
+    """h = 5.44 + forced (v / v_ref)^n + wind: what the wind adds does not follow the tyre's own speed."""
+    law, wind = {"name": "outside-film-speed", "exponent": 0.5}, {"name": "wind", "air_speed": "6 m/s"}
+    still, power, both = (tyre(effects, drive__phases__rolling__speed="30 m/s") for effects in ([], [law], [law, wind]))
+    assert power.air_film(10.0) == pytest.approx(5.44 + (still.air_film(10.0) - 5.44) * 3**0.5, rel=1e-3)
+    assert both.air_film(10.0) == pytest.approx(power.air_film(10.0) + 1.674 * 6.0)
+
+
+def test_a_late_clock_shifts_every_channel_of_the_logger() -> None:
+    late = [{"name": "clock-offset", "late": "20 s"}]
+    rim = {"law": "lumped", "mass": "4 kg", "cooling": "2 W/K", "air": "0.5 W/K"}
+    changes = {"boundaries__rim": rim, "boundaries__contained_air": {"law": "gas"}}
+    plain, shifted = (tyre(effects, **changes).study.run() for effects in ([], late))
+    times = plain.times
+    for name in ("contained-air", "rim", "crown-inner"):
+        before, after = plain.readings[name].to_numpy(), shifted.readings[name].to_numpy()
+        assert after == pytest.approx(np.interp(times + 20.0, times, before), abs=1e-9), name
+        assert np.abs(after - before).max() > 0.01, name
+    # What the tyre's air really has is not changed by a clock.
+    assert shifted.gas_temperature == pytest.approx(plain.gas_temperature)

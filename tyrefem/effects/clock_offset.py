@@ -9,7 +9,7 @@ from tyrefem.effects.signature import Signature
 
 
 class ClockOffset(Effect):
-    """reading at t -> temperature at t + late, for thermocouples, not contained air and rim; held beyond the ends."""
+    """reading at t -> temperature at t + late, in every channel, contained air and rim too; held beyond the ends."""
 
     name: ClassVar[str] = "clock-offset"
     family: ClassVar[str] = "measurement"

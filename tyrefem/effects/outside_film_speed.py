@@ -11,7 +11,10 @@ from tyrefem.effects.tyre import Tyre
 
 
 class OutsideFilmSpeed(Effect):
-    """h -> h_0 + (h - h_0) (v / v_ref)^exponent while rolling, h_0 = 5.44 W/m2/K of still air, v_ref = 10 m/s."""
+    """h -> h_0 + (h - h_0) (v / v_ref)^exponent while rolling, h_0 = 5.44 W/m2/K of still air, v_ref = 10 m/s.
+
+    h is the study's law; what `wind` adds to it is not multiplied.
+    """
 
     name: ClassVar[str] = "outside-film-speed"
     family: ClassVar[str] = "boundary"
@@ -30,10 +33,9 @@ class OutsideFilmSpeed(Effect):
 
     exponent: Annotated[float, Prior("1", "added to the exponent of speed of the forced part", 0.3, -0.9, 1.5)] = 0.0
 
-    def film_factor(self, tyre: Tyre, film: str, t: float) -> float:
-        """The forced part times (v / v_ref)^exponent; nothing at rest."""
+    def film_addend(self, tyre: Tyre, film: str, t: float) -> float:
+        """W/m2/K added to the forced part of the law, by (v / v_ref)^exponent - 1; nothing at rest."""
         if film != "outside_air" or tyre.speed(t) == 0:
-            return 1.0
-        whole = tyre.study.card.boundaries.outside_air.film(tyre.speed(t))
-        forced = max(whole - self.STILL, 0.0) / whole if whole > 0 else 0.0
-        return float(1 + forced * (speed_ratio(tyre, t) ** self.exponent - 1))
+            return 0.0
+        forced = max(tyre.study.card.boundaries.outside_air.film(tyre.speed(t)) - self.STILL, 0.0)
+        return float(forced * (speed_ratio(tyre, t) ** self.exponent - 1))

@@ -22,7 +22,7 @@ from tyrefem.simulation.effect_states import StateHistory
 from tyrefem.simulation.heat_budget import HeatBudget, whole_tyre
 from tyrefem.simulation.phases import PhaseState, deep_contacts, phase_states
 from tyrefem.simulation.rolling_resistance import RollingResistance, just_before, rolling_reading, rolling_resistance
-from tyrefem.simulation.sensors import recorded, true_places
+from tyrefem.simulation.sensors import logged, recorded, true_places
 from tyrefem.simulation.sliding_outcome import SlidingOutcome, sliding_outcome
 from tyrefem.simulation.surroundings import GAS, RIM
 
@@ -167,9 +167,13 @@ class ResultData(Brief):
 
     @property
     def reading_columns(self) -> dict[str, Array]:
-        """``time_s``, one column per sensor (lag applied), the contained air, and a lumped rim; degC."""
-        rim = {} if self.rim_temperature is None else {RIM: self.rim_temperature}
-        return {"time_s": self.times, **self.recorded, GAS: self.gas_temperature, **rim}
+        """``time_s``, one column per sensor (lag applied), the contained air, and a lumped rim; degC.
+
+        All are as the logger records them: an effect on its clock shifts every column.
+        """
+        lumped = {GAS: self.gas_temperature} | ({} if self.rim_temperature is None else {RIM: self.rim_temperature})
+        by_clock = {name: logged(self.study, self.times, column) for name, column in lumped.items()}
+        return {"time_s": self.times, **self.recorded, **by_clock}
 
     @functools.cached_property
     def recorded(self) -> dict[str, Array]:

@@ -81,15 +81,20 @@ def recorded(study: StudyData, times: Array, temperatures: ArrayLike) -> dict[st
     for lag, names in of_lag.items():
         together = lagged(times, values[:, [place[name] for name in names]], lag)
         read |= {name: together[:, column] for column, name in enumerate(names)}
-    late = sum(effect.clock() for effect in effects)
     readings = {}
     for name in lags:
         channel = name
         for effect in effects:
             channel = effect.channel(channel)
         column = read[channel] + sum(effect.offset(name) for effect in effects)
-        readings[name] = _later(times, column, late) if late else column
+        readings[name] = logged(study, times, column)
     return readings
+
+
+def logged(study: StudyData, times: Array, temperatures: Array) -> Array:
+    """Temperatures (n_times, ...) by the logger's clock: all channels, also of contained air and rim, have this clock."""
+    late = sum(effect.clock() for effect in study.effects)
+    return _later(times, temperatures, late) if late else temperatures
 
 
 def _later(times: Array, readings: Array, late: float) -> Array:

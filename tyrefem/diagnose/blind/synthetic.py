@@ -30,7 +30,7 @@ from tyrefem.measured import MeasuredRun
 from tyrefem.mechanics.cycle_schedule import CycleSchedule
 from tyrefem.quantity import Unit
 from tyrefem.simulation.rolling_tyre import RollingTyre
-from tyrefem.simulation.sensors import recorded, true_places
+from tyrefem.simulation.sensors import logged, recorded, true_places
 from tyrefem.simulation.surroundings import GAS
 
 Array = NDArray[np.float64]
@@ -177,7 +177,8 @@ def record(
     clean: dict[str, Any] = dict(recorded(study, times, at))
     law: ContainedAirLaw = study.card.boundaries.contained_air
     names = list(tyre.problem.reservoirs)
-    clean[GAS] = reservoirs[:, names.index(GAS)] if GAS in names else np.full(len(times), law.temperature)  # type: ignore[attr-defined]
+    gas = reservoirs[:, names.index(GAS)] if GAS in names else np.full(len(times), law.temperature)  # type: ignore[attr-defined]
+    clean[GAS] = logged(study, times, gas)
     count = int(times[-1] / logger.every)
     clock = np.sort(rng.uniform(0.0, times[-1], count))
     clock = clock[np.diff(clock, prepend=-1.0) > 0.05]

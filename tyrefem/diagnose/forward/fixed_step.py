@@ -25,7 +25,7 @@ from tyrefem.geometry.wall import inside_mesh
 from tyrefem.inputs.study import StudyData
 from tyrefem.mechanics.nearby_cycles import NearbyCycles
 from tyrefem.simulation.rolling_tyre import RollingTyre
-from tyrefem.simulation.sensors import displacements, recorded, recorded_change, true_places
+from tyrefem.simulation.sensors import displacements, logged, recorded, recorded_change, true_places
 from tyrefem.simulation.surroundings import GAS, RIM
 
 Array = NDArray[np.float64]
@@ -194,7 +194,9 @@ def read(study: StudyData, grid: Array, at_sensors: Array | None, lumped: dict[s
     ----------
     at_sensors : (n_grid, n_sensors) degC; None without sensors. lumped : contained air and rim if they are reservoirs.
     """
-    readings = dict(lumped) if at_sensors is None else recorded(study, grid, at_sensors) | lumped
+    readings = {name: logged(study, grid, column) for name, column in lumped.items()}
+    if at_sensors is not None:
+        readings = recorded(study, grid, at_sensors) | readings
     if GAS not in readings:
         held = study.card.boundaries.contained_air.fixed_temperature
         readings[GAS] = np.full(len(grid), held)
@@ -322,7 +324,7 @@ class ReadingSensitivities:
             if sensor in (GAS, RIM):
                 known = sensor in gas
                 column = tangents.reservoirs[:, :, gas.index(sensor)] if known else np.zeros(tangents.values.shape[:2])
-                slopes[sensor] = base.dense(column.T, tangents.times)
+                slopes[sensor] = logged(base.study, base.grid, base.dense(column.T, tangents.times))
         if len(slopes) < len(sensors):
             at_sensors = base.dense(np.moveaxis(tangents.at(base.sensor_points), 0, -1), tangents.times)
             changes = recorded_change(base.study, base.grid, at_sensors)
