@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,7 +15,7 @@ import tyrefem as tf
 from tyrefem.compare import compare
 from tyrefem.compare.experiment import acting_in, driven, experiments
 from tyrefem.diagnose.data.runs import measured_drive
-from tyrefem.errors import InputError
+from tyrefem.errors import InputError, ResultWarning
 from tyrefem.measured import MeasuredRun
 
 pytestmark = pytest.mark.fast
@@ -57,7 +58,7 @@ def test_two_loggers_of_a_run_are_one_run_with_all_sensors(study: Study) -> None
 
 def test_every_logger_keeps_its_noise(study: Study, tmp_path: Path) -> None:
     files = [written(tmp_path / name, study, sensors=(sensor,)) for name, sensor in (("a", "crown"), ("b", "shoulder"))]
-    both = replace(study, measured=(Entry(files[0], noise=2.0), Entry(files[1])))
+    both = replace(study, measured=(Entry(files[0], run="run-1", noise=2.0), Entry(files[1], run="run-1")))
     (experiment,) = experiments(both)
     assert [experiment.noise_of(sensor, both) for sensor in ("crown", "shoulder")] == [2.0, Sensor().noise]
     assert len(experiments(replace(both, measured=(both.measured[0], Entry(files[1], drive=FAST))))) == 2
@@ -149,3 +150,25 @@ def test_a_run_at_hand_is_taken_as_its_entry_says(study: Study) -> None:
     entry = Entry(Path("old.csv"), run="run-1", rename={"T1": "crown"}, ignore=("crown",))
     comparison = compare(replace(study, measured=(entry,)), run)
     assert comparison.rms_K == pytest.approx(0.0, abs=1e-9)
+
+
+def test_files_of_one_name_in_two_folders_are_said_to_be_one_run(study: Study, tmp_path: Path) -> None:
+    """Two folders may be two loggers of a run, or two days."""
+    files = []
+    for day, sensor in (("day-1", "crown"), ("day-2", "shoulder")):
+        (tmp_path / day).mkdir()
+        files.append(tmp_path / day / "log.csv")
+        pd.DataFrame({"time [s]": TIMES, f"{sensor} [degC]": study.at(sensor, TIMES)}).to_csv(files[-1], index=False)
+    of_entries = replace(study, measured=tuple(Entry(file) for file in files))
+    for given in ((of_entries,), (study, files)):
+        with pytest.warns(ResultWarning, match=r"day-1/log.csv and .*day-2/log.csv are taken as one run 'log'"):
+            (both,) = experiments(*given)
+        assert set(both.run.sensors) == {"crown", "shoulder"}
+    # Nothing is said where the entries name the run, where the drives differ, or of one file at two drives.
+    named = tuple(Entry(file, run="log") for file in files)
+    apart = (Entry(files[0]), Entry(files[1], drive=FAST))
+    twice = (Entry(files[0]), Entry(files[0], drive=FAST))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        counts = [len(experiments(replace(study, measured=entries))) for entries in (named, apart, twice)]
+    assert counts == [1, 2, 2]

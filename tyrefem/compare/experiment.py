@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -9,7 +10,7 @@ from typing import Any, cast
 
 from tyrefem.compare.interface import MeasuredEntryLike, StudyLike
 from tyrefem.compare.sensors import check_sensors, sensor_of
-from tyrefem.errors import InputError, nearest
+from tyrefem.errors import InputError, ResultWarning, nearest
 from tyrefem.inputs.study import StudyData
 from tyrefem.inputs.study_effects import check_runs
 from tyrefem.measured import MeasuredRun
@@ -105,7 +106,9 @@ def experiments(
     if not planned:
         raise InputError("there is no measured run to compare with")
     check_sensors([experiment.run for experiment in planned], study)
-    distinct = _with_distinct_names(_joined(planned))
+    joined = _joined(planned)
+    _warn_of_folders(joined, reader.nameless)
+    distinct = _with_distinct_names(joined)
     if table is None and isinstance(study, StudyData):
         check_runs(study, [experiment.origin for experiment in distinct])
     return distinct
@@ -144,6 +147,20 @@ def _joined(experiments: Sequence[Experiment]) -> list[Experiment]:
     return result
 
 
+def _warn_of_folders(joined: Sequence[Experiment], nameless: Mapping[str, Sequence[object]]) -> None:
+    """Warn of files in several folders that are one run only because they have the same name."""
+    for name, tables in nameless.items():
+        files = [table for table in tables if isinstance(table, Path)]
+        if len(files) > 1 and len([each for each in joined if each.origin == name]) < len(files):
+            named = " and ".join(map(str, files))
+            warnings.warn(
+                f"{named} are taken as one run '{name}' with {len(files)} loggers: say run = '{name}' in their entries, "
+                "or give different runs different names",
+                ResultWarning,
+                stacklevel=4,
+            )
+
+
 def _with_distinct_names(experiments: Sequence[Experiment]) -> tuple[Experiment, ...]:
     """The experiments with distinct names; two records of the same sensors in one run stay apart."""
     names: set[str] = {experiment.origin for experiment in experiments}
@@ -166,7 +183,8 @@ class _ExperimentReader:
         self.entries, self.given = entries, given
         self.columns: list[str] = []
         self._at_hand: dict[str, MeasuredTable] = {}
-        self._frames = 0
+        #: Name that a table without names of runs gives to its run -> such tables, in the order of reading.
+        self.nameless: dict[str, list[object]] = {}
 
     def of_entries(self, entries: Sequence[MeasuredEntryLike]) -> list[Experiment]:
         """The runs of entries; one without ``run`` has those runs of its table that no other entry names."""
@@ -189,9 +207,10 @@ class _ExperimentReader:
                 wrong = f"no run '{entry.run}'{nearest(entry.run, names)}"
                 raise InputError(wrong, field="measured.run", file=entry.table)
             wanted = {entry.run} if entry.run is not None else {*names} - {*named[_path(entry.table)]}
-            result += [
+            planned = [
                 self._experiment(self._later(run, measured), entry) for run in measured.runs if run.name in wanted
             ]
+            result += planned if entry.run is not None else self._apart(planned, table_lines(entry.table))
         return result
 
     def of_tables(self, table: Table) -> list[Experiment]:
@@ -210,7 +229,10 @@ class _ExperimentReader:
         if not isinstance(table, str | Path):
             raise _no_table(table)
         of_file = [entry for entry in self.entries if _path(entry.table) == _path(table)]
-        return self.of_entries(of_file) if of_file else self._of_other(table_lines(table))
+        if of_file:
+            return self.of_entries(of_file)
+        lines = table_lines(table)
+        return self._apart(self._of_other(lines), lines)
 
     def _of_entry(self, entry: MeasuredEntryLike) -> MeasuredTable:
         """The table of an entry, read once; it must have the columns that the entry names."""
@@ -240,14 +262,22 @@ class _ExperimentReader:
         return [result[name] for name in of_run if name in result]
 
     def _of_frame(self, frame: Any) -> list[Experiment]:
-        """The runs of a frame; frames whose runs have no names are different runs."""
+        """The runs of a frame."""
         lines = frame_lines(frame)
-        result = self._of_other(lines)
-        nameless = lines.runs(self.given.ignore) == (lines.name,)
-        self._frames += nameless
-        if not nameless or self._frames == 1:
-            return result
-        return [replace(each, origin=f"{lines.name} ({self._frames})") for each in result]
+        return self._apart(self._of_other(lines), lines)
+
+    def _apart(self, planned: list[Experiment], lines: TableLines) -> list[Experiment]:
+        """The runs of a table; frames whose runs have no names are different runs, files have their own name."""
+        if lines.runs(self.given.ignore) != (lines.name,):
+            return planned
+        tables = self.nameless.setdefault(lines.name, [])
+        table: object = lines if lines.in_memory else _path(lines.file)
+        if table not in tables:
+            tables.append(table)
+        number = tables.index(table) + 1
+        if number == 1 or not lines.in_memory:
+            return planned
+        return [replace(each, origin=f"{lines.name} ({number})") for each in planned]
 
     def _of_run(self, run: MeasuredRun) -> Experiment:
         """A run already read, as the entry of its name says."""

@@ -92,7 +92,7 @@ def recorded(study: StudyData, times: Array, temperatures: ArrayLike) -> dict[st
 
 
 def logged(study: StudyData, times: Array, temperatures: Array) -> Array:
-    """Temperatures (n_times, ...) by the logger's clock: all channels, also of contained air and rim, have this clock."""
+    """Temperatures (n_times, ...) by the logger's clock, which all channels have, also contained air and rim."""
     late = sum(effect.clock() for effect in study.effects)
     return _later(times, temperatures, late) if late else temperatures
 
