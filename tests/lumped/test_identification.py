@@ -126,6 +126,7 @@ def test_too_few_numbers_are_refused() -> None:
         ({"bodies": {"tyre": {"heat_share": 0.5}}}, "add up to 0.5"),
         ({"films": [{"between": ["tyre", "roda"]}]}, "did you mean 'road'"),
         ({"films": [{"between": ["air", "road"]}]}, "must join"),
+        ({"films": [{"between": ["tyre", "air"]}, {"between": ["air", "tyre"]}]}, "a second film air-tyre"),
         ({"bodies": {"tyre": {"heat_share": 1.0}, "gas": {}}}, "loses its heat nowhere"),
         ({"bodies": {"rim": {"heat_share": 1.0}}}, "is a surrounding"),
     ],
@@ -134,11 +135,6 @@ def test_impossible_cards_are_refused(changes: dict[str, Any], words: str) -> No
     with pytest.raises(InputError, match=r"films|bodies") as error:
         ThermalCard.check({**BODY, **changes})
     assert words in str(error.value)
-
-
-def test_runs_of_one_name_are_refused() -> None:
-    with pytest.raises(InputError, match=r"runs\.1\.name: two runs are named 'a'"):
-        ThermalCard.check({**BODY, "runs": [BODY["runs"][0] | {"name": "a"}, BODY["runs"][0] | {"name": "a"}]})
 
 
 def test_the_command_writes_films_with_standard_deviations(
@@ -152,3 +148,13 @@ def test_the_command_writes_films_with_standard_deviations(
     assert card["conductance"]["carcass-gas"]["film"].endswith("W/m**2/K")
     assert card["heat_capacity"]["tread"]["value"].endswith("J/K")
     assert (folder / "thermal-card.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_runs_that_cannot_be_are_refused() -> None:
+    """A run written twice would halve its variance; a heated body is not colder than everything about it."""
+    run = BODY["runs"][0]
+    with pytest.raises(InputError, match=r"runs\.1\.name: a second run '.*': it would count twice"):
+        ThermalCard.check({**BODY, "runs": [run, run]})
+    cold = {**run, "plateau": dict.fromkeys(run["plateau"], "5 degC")}
+    with pytest.raises(InputError, match=r"runs\.0\.plateau\.tyre: 5 degC is colder than all surroundings"):
+        ThermalCard.check({**BODY, "runs": [cold]})

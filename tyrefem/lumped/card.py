@@ -104,7 +104,11 @@ class ThermalCard(Card):
             if name in SURROUNDINGS:
                 raise InputError(f"'{name}' is a surrounding, whose temperature the runs give", field=f"bodies.{name}")
         known = (*self.bodies, *SURROUNDINGS)
+        before: set[frozenset[str]] = set()
         for number, film in enumerate(self.films):
+            if frozenset(film.between) in before:
+                raise InputError(f"a second film {film.name}: state both as one", field=f"films.{number}.between")
+            before.add(frozenset(film.between))
             for name in film.between:
                 if name not in known:
                     raise InputError(f"no body '{name}'{nearest(name, known)}", field=f"films.{number}.between")
@@ -134,10 +138,18 @@ class ThermalCard(Card):
 
     @model_validator(mode="after")
     def _measured(self) -> ThermalCard:
-        names = [run.name for run in self.runs]
+        names: set[str] = set()
         for number, run in enumerate(self.runs):
-            if run.name in names[:number]:
-                raise InputError(f"two runs are named '{run.name}'", field=f"runs.{number}.name")
+            if run.name in names:
+                raise InputError(f"a second run '{run.name}': it would count twice", field=f"runs.{number}.name")
+            names.add(run.name)
+            coldest = min(run.surroundings(name) for name in SURROUNDINGS)
+            for body, temperature in run.plateau.items():
+                if body in self.bodies and temperature < coldest - 3 * self.temperature_sd:
+                    raise InputError(
+                        f"{temperature:g} degC is colder than all surroundings, {coldest:g} degC: no plateau",
+                        field=f"runs.{number}.plateau.{body}",
+                    )
             for table in ("plateau", "warm_up", "cool_down"):
                 for name in getattr(run, table):
                     if name not in self.bodies:
