@@ -154,8 +154,8 @@ def _warn_of_folders(joined: Sequence[Experiment], nameless: Mapping[str, Sequen
         if len(files) > 1 and len([each for each in joined if each.origin == name]) < len(files):
             named = " and ".join(map(str, files))
             warnings.warn(
-                f"{named} are taken as one run '{name}' with {len(files)} loggers: say run = '{name}' in their entries, "
-                "or give different runs different names",
+                f"{named} are taken as one run '{name}' with {len(files)} loggers: "
+                f"say run = '{name}' in their entries, or give different runs different names",
                 ResultWarning,
                 stacklevel=4,
             )

@@ -10,7 +10,10 @@ from tyrefem.effects.signature import Signature
 
 
 class SensorMisplaced(OfSensor):
-    """place of one sensor -> place + (along, deeper), kept inside the rubber."""
+    """place of one sensor -> place + (along, deeper), kept inside the rubber.
+
+    ``along`` counts as s does: away from the crown on the side s > 0, towards it on the side s < 0 of a full section.
+    """
 
     name: ClassVar[str] = "sensor-misplaced"
     family: ClassVar[str] = "measurement"

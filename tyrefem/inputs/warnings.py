@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
@@ -9,6 +10,9 @@ from tyrefem.errors import InputWarning
 from tyrefem.geometry import Section
 from tyrefem.inputs.study_card import StudyCard
 from tyrefem.materials.card import MaterialCard
+
+#: Two angles that differ by less are the same, rad: 0.05 deg.
+SAME_ANGLE = math.radians(0.05)
 
 
 def study_warnings(
@@ -23,7 +27,7 @@ def study_warnings(
     """
     warnings = [*card.warnings(), *_of_another_tyre(card, section), *_of_driven_temperatures(card)]
     warnings += [warning.within(field="section") for warning in section.warnings]
-    warnings += _of_materials(materials)
+    warnings += [*_of_materials(materials), *_of_crown_angles(section, materials)]
     if card.mechanics.energy is not None:
         rows = card.mechanics.energy.without_effect(section)
         warnings += [warning.within(field="mechanics.energy") for warning in rows]
@@ -50,6 +54,19 @@ def _of_driven_temperatures(card: StudyCard) -> Iterator[InputWarning]:
             yield InputWarning(
                 f"is not read: every phase of the drive has '{key}', which goes before it; remove either",
                 field=f"boundaries.{side}.temperature",
+            )
+
+
+def _of_crown_angles(section: Section, materials: Mapping[str, MaterialCard]) -> Iterator[InputWarning]:
+    """Crown angles of cards that do not act, as the section's rating has another."""
+    rated = None if section.rating is None else section.rating.cord_angle
+    for region, material in materials.items():
+        stated = None if material.cord is None else material.cord.crown_angle
+        if rated and stated is not None and abs(stated - rated) > SAME_ANGLE:
+            yield InputWarning(
+                f"{math.degrees(stated):.4g} deg does not act: section.rating.cord_angle goes before it, "
+                f"{math.degrees(rated):.4g} deg",
+                field=f"materials.{region}.cord.crown_angle",
             )
 
 

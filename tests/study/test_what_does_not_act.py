@@ -1,0 +1,50 @@
+"""Input that is understood but does not act: it is refused or warned of, with what acts instead."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+import tyrefem as tf
+from tyrefem.errors import InputError
+from tyrefem.mechanics.rolling.critical_speed import ring_speed
+
+pytestmark = pytest.mark.fast
+
+TYRE = "nasa-22x5.5-8pr"
+
+
+def test_a_cards_crown_angle_beside_that_of_the_rating() -> None:
+    assert not tf.study(TYRE).warnings
+    for change in ("materials.carcass.cord.crown_angle", "section.cord_angle"):
+        (warning,) = tf.study(TYRE, {change: "33 deg"}).warnings
+        assert warning.field == "materials.carcass.cord.crown_angle"
+        assert "deg does not act: section.rating.cord_angle" in warning.message
+
+
+def test_a_sensor_on_the_side_that_a_half_section_leaves_out() -> None:
+    study = tf.study(TYRE)
+    r, z = study.stated_places["shoulder-inner"]
+    at = f"{r * 1e3:.3f} mm", f"{z * 1e3:.3f} mm"
+    assert tf.study(TYRE, {"sensors.shoulder-inner": {"at": list(at)}}).stated_places
+    left = [at[0], f"-{at[1]}"]
+    with pytest.raises(
+        InputError, match=r"sensors\.shoulder-inner: .*z = -.* mm is on the side that a half section leaves"
+    ):
+        tf.study(TYRE, {"sensors.shoulder-inner": {"at": left}})
+    both = tf.study(TYRE, {"mesh.section": "full", "sensors.shoulder-inner": {"at": left}})
+    assert both.stated_places["shoulder-inner"][1] == pytest.approx(-z, abs=1e-5)
+
+
+def test_the_voids_of_a_pattern_make_waves_on_the_ring_faster() -> None:
+    """Speed goes with 1/sqrt(mass of the crown)."""
+    plain = tf.study(TYRE)
+    pattern = {"void": 0.2, "block_length": "20 mm", "source": "test"}
+    cut = plain.replace({"section": {"base": TYRE, "pattern": pattern}})
+    before, after = (ring_speed(study, 572e3) for study in (plain, cut))
+    tread = {"materials.tread.density.value": f"{0.8 * plain.materials['tread'].density.at(25.0):.9g} kg/m**3"}
+    lighter = ring_speed(plain.replace(tread), 572e3)
+    assert after > 1.01 * before
+    assert after == pytest.approx(lighter, rel=1e-6)
+    assert math.isfinite(after)
