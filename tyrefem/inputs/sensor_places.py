@@ -66,8 +66,8 @@ def sensor_place(sensor: Sensor, section: Section) -> tuple[float, float]:
         r, z = sensor.at
         if section.half and z < -1e-9:
             raise InputError(
-                f"the sensor is outside the rubber: z = {z * 1e3:.1f} mm is on the side that a half section leaves out; "
-                f"give the mirrored place, z = {-z * 1e3:.1f} mm, or [mesh] section = 'full'"
+                f"the sensor is outside the rubber: z = {z * 1e3:.1f} mm is on the side that a half section leaves "
+                f"out; give the mirrored place, z = {-z * 1e3:.1f} mm, or [mesh] section = 'full'"
             )
         if not section.contains([[r, z]])[0]:
             s, depth = section.locate([[r, z]])

@@ -27,7 +27,7 @@ def study_warnings(
     """
     warnings = [*card.warnings(), *_of_another_tyre(card, section), *_of_driven_temperatures(card)]
     warnings += [warning.within(field="section") for warning in section.warnings]
-    warnings += [*_of_materials(materials), *_of_crown_angles(section, materials)]
+    warnings += [*_of_materials(materials), *_of_crown_angles(card, section, materials)]
     if card.mechanics.energy is not None:
         rows = card.mechanics.energy.without_effect(section)
         warnings += [warning.within(field="mechanics.energy") for warning in rows]
@@ -57,12 +57,16 @@ def _of_driven_temperatures(card: StudyCard) -> Iterator[InputWarning]:
             )
 
 
-def _of_crown_angles(section: Section, materials: Mapping[str, MaterialCard]) -> Iterator[InputWarning]:
-    """Crown angles of cards that do not act, as the section's rating has another."""
+def _of_crown_angles(
+    card: StudyCard, section: Section, materials: Mapping[str, MaterialCard]
+) -> Iterator[InputWarning]:
+    """Crown angles that the study writes and that do not act, as the section's rating has another."""
     rated = None if section.rating is None else section.rating.cord_angle
     for region, material in materials.items():
         stated = None if material.cord is None else material.cord.crown_angle
-        if rated and stated is not None and abs(stated - rated) > SAME_ANGLE:
+        reference = card.materials.get(region)
+        changed = isinstance(reference, Mapping) and "crown_angle" in (reference.get("cord") or {})
+        if rated and changed and stated is not None and abs(stated - rated) > SAME_ANGLE:
             yield InputWarning(
                 f"{math.degrees(stated):.4g} deg does not act: section.rating.cord_angle goes before it, "
                 f"{math.degrees(rated):.4g} deg",
