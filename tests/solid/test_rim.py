@@ -154,3 +154,17 @@ def test_no_harmonic_of_the_truck_tyre_is_unstable() -> None:
     for n in (0, 1, 2, 6, 24, 60):
         harmonics.compliance(n, dofs)
     assert set(harmonics.negative_pivots.values()) == {0}
+
+
+def test_a_rim_between_air_on_both_sides_has_its_flange() -> None:
+    """The toe in the air, too: the flange stands at the heel, where it stands without a bare toe."""
+    tyre = study("passenger-205-55r16")
+    mesh = build(tyre.section, size=6e-3, through=1).mesh
+    rim = np.asarray(mesh.boundaries["rim"])
+    # The facets of the seat whose middles are nearest to the mid plane become outside air.
+    toe = rim[np.argsort(mesh.p[1, mesh.facets[:, rim]].mean(axis=0))[:1]]
+    air = np.concatenate([mesh.boundaries["outside_air"], toe])
+    bare = mesh.with_boundaries({"rim": np.setdiff1d(rim, toe), "outside_air": np.sort(air)})
+    (flange,), (usual,) = on_rim(bare, 9e-3)[1], on_rim(mesh, 9e-3)[1]
+    assert flange.centre == pytest.approx(usual.centre)
+    assert flange.radius == pytest.approx(usual.radius)

@@ -141,9 +141,12 @@ def on_rim(
     for side in (1, -1):
         side_facets = seat[side * mesh.p[1, mesh.facets[:, seat]].mean(axis=0) > 0]
         outer = face[side * mesh.p[1, mesh.facets[:, face]].mean(axis=0) > 0]
-        if len(np.intersect1d(mesh.facets[:, side_facets], mesh.facets[:, outer])) != 1:
+        common = np.intersect1d(mesh.facets[:, side_facets], mesh.facets[:, outer])
+        if not len(common):
             continue
-        up, down = _chain(mesh, outer, side_facets), _chain(mesh, side_facets, outer)
+        # Air on both sides of a rim: the flange stands where it is farther from the mid plane, the other end is the toe.
+        heel = int(common[np.argmax(side * mesh.p[1, common])])
+        up, down = _chain(mesh, outer, heel), _chain(mesh, side_facets, heel)
         below = np.cumsum(np.hypot(*np.diff(mesh.p[:, down[1]], axis=1)))
         held = max(min(int(np.abs(below - radius).argmin()) + 1, len(down[1]) - 2), 0)
         touching = np.concatenate([down[1][held::-1], up[1][1:]])
@@ -162,10 +165,9 @@ def on_rim(
     return named, tuple(Flange(rings, middle, size, side=side) for middle, size, side in flanges)
 
 
-def _chain(mesh: Any, facets: Indices, other: Indices) -> tuple[Indices, Indices]:
-    """Facets of a line in order from its common point with another line, and the points of the line."""
+def _chain(mesh: Any, facets: Indices, point: int) -> tuple[Indices, Indices]:
+    """Facets of a line in order from a point at its end, as far as they are connected, and their points."""
     ends = mesh.facets[:, facets]
-    point = int(np.intersect1d(ends, mesh.facets[:, other])[0])
     left, order, points = list(range(len(facets))), [], [point]
     while left:
         after = [k for k in left if point in ends[:, k]]
