@@ -49,3 +49,17 @@ def test_the_voids_of_a_pattern_make_waves_on_the_ring_faster() -> None:
     assert after > 1.01 * before
     assert after == pytest.approx(lighter, rel=1e-6)
     assert math.isfinite(after)
+
+
+@pytest.mark.parametrize(
+    "effect", [{"name": "pressure-loss", "rate": "2 kPa/min"}, {"name": "pressure-rise", "rise": 0.1}]
+)
+def test_the_deflection_of_a_leak_is_the_load_laws_beside_finite_elements(effect: dict[str, object]) -> None:
+    assert not tf.study(TYRE, {"effects": [effect]}).warnings
+    (warning,) = tf.study(TYRE, {"mechanics.strain": "fem", "effects": [effect]}).warnings
+    assert warning.field == f"effects.{effect['name']}"
+    assert "by mechanics.load_law 'tr-r-64', not by the strain law 'fem'" in warning.message
+    with pytest.raises(
+        InputError, match=r"'vertical-stiffness' does not depend on pressure; beside strain = 'fem' a ramp"
+    ):
+        tf.study("passenger-205-55r16", {"effects": [effect]})

@@ -219,6 +219,11 @@ class Effect(Card):
         """Reason why the effect is not possible in a study; None if it is possible."""
         return None
 
+    @classmethod
+    def caution(cls, study: StudyOfTyre) -> str | None:
+        """What a person should know of the effect in a study, as a warning; None: nothing."""
+        return None
+
     def problem(self, study: StudyOfTyre) -> str | None:
         """Error of this effect in a study (not possible there, or unknown choice such as a sensor), or None."""
         return self.refusal(study)

@@ -213,6 +213,10 @@ class MechanicsOfStudy(Protocol):
     """``[mechanics]`` of a study."""
 
     @property
+    def strain(self) -> str:
+        """Name of the strain law."""
+
+    @property
     def load_law(self) -> LoadLaw:
         """Load to deflection."""
 

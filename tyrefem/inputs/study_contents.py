@@ -140,7 +140,11 @@ class StudyContents(Brief):
     @functools.cached_property
     def warnings(self) -> tuple[InputWarning, ...]:
         """Warnings of unusual input in the study, its section and its material cards."""
-        return study_warnings(self.card, self.new_section, self.materials, self.file)
+        cautions = ((effect, effect.caution(self)) for effect in self.effects)
+        return (
+            *study_warnings(self.card, self.new_section, self.materials, self.file),
+            *(InputWarning(words, f"effects.{effect.name}", self.file) for effect, words in cautions if words),
+        )
 
     @property
     def title(self) -> str:

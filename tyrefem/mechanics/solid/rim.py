@@ -144,7 +144,7 @@ def on_rim(
         common = np.intersect1d(mesh.facets[:, side_facets], mesh.facets[:, outer])
         if not len(common):
             continue
-        # Air on both sides of a rim: the flange stands where it is farther from the mid plane, the other end is the toe.
+        # Air on both sides of a rim: the flange is at the end farther from the mid plane, the other end is the toe.
         heel = int(common[np.argmax(side * mesh.p[1, common])])
         up, down = _chain(mesh, outer, heel), _chain(mesh, side_facets, heel)
         below = np.cumsum(np.hypot(*np.diff(mesh.p[:, down[1]], axis=1)))
