@@ -182,6 +182,16 @@ def test_a_bundle_is_the_mixture_of_its_wires_and_rubber(size: str, share: float
     assert wires * np.pi * diameter**2 / 4 == pytest.approx(area, rel=1e-3)
 
 
+@pytest.mark.parametrize(
+    "size", ["205/55R16 91V", "175/70R13", "LT235/85R16", "295/80R22.5", "445/65R22.5", "22x5.5R12 8PR", "1400x530R23"]
+)
+def test_a_bundle_is_drawn_as_large_as_its_numbers_say(size: str) -> None:
+    """It bends about the flange: its middle is as long as it is high, so that it has its height times its width."""
+    rules, section = draw_size(size).rules, load({"size": size})
+    stated = rules["bead_height"].value * rules["bead_width"].value
+    assert section.area("bead") == pytest.approx(stated, rel=0.01)
+
+
 def test_more_wire_than_the_bundle_holds_is_refused() -> None:
     with pytest.raises(InputError, match="bead_height x bead_width; allowed: below 90%"):
         draw_size("205/60R15", {"bead_width": "3 mm", "bead_height": "4 mm"})

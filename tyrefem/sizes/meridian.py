@@ -123,6 +123,15 @@ class SizedMeridian:
         s, r, z, phi = self._line
         return CubicHermiteSpline(s, np.stack([r, z], axis=-1), np.stack([-np.cos(phi), np.sin(phi)], axis=-1))
 
+    def before(self, s: float, length: float, y: float) -> float:
+        """Place of the line from which a parallel at the distance ``y``, m, outwards, has a ``length``, m, up to ``s``.
+
+        With the curvature -dphi/ds the parallel's length is that of s - y phi.
+        """
+        along, _, _, phi = self._line
+        parallel = np.maximum.accumulate(along - y * phi)
+        return float(np.interp(np.interp(s, along, parallel) - length, parallel, along))
+
     def points(self, count: int) -> list[tuple[float, float]]:
         """(r, z) for a file: about so many, closer where the line bends more, with one at every change of curvature."""
         s, r, z, phi = self._line

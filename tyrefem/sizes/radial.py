@@ -114,7 +114,8 @@ class Radial:
         """Stations of the construction along the line, m."""
         end, wide, sh = self.line.length, self.line.widest_s, self.shoulder
         bottom = end - self.n("toe_gauge") - self.ply_gauge
-        bead = bottom - self.n("bead_height")
+        # The plies bend about the flange's side: the bundle's middle is shorter than the line below it.
+        bead = self.line.before(bottom, self.n("bead_height"), (self.ply_gauge + self.n("bead_width")) / 2)
         places = {
             "peak": sh + 0.2 * (wide - sh),
             "cushion": sh + 0.6 * (wide - sh),
@@ -133,7 +134,7 @@ class Radial:
                     f"must be from 2 mm to {most * 1e3:.4g} mm here: from the bead to below the widest place",
                     field=f"parameters.{number}",
                 )
-        if not places["flange"] < bead + self.n("bead_height"):
+        if not places["flange"] < bottom:
             raise InputError("the bead is higher than the rim's flange allows", field="parameters.bead_height")
         widest_belt = max(self.n(belt.width) for belt in self.belts) / 2
         if widest_belt > places["peak"] - 1e-3:

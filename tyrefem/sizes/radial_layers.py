@@ -80,15 +80,8 @@ class RadialLayers:
         if index == 0:
             width = self.n("bead_width")
             bends = self.radial.reinforced and p["tip"] + TOGETHER < p["flange"] < p["bead"] - TOGETHER
-            full = [(p["flange"], 0.92 * width)] if bends else []
-            return [
-                *rows,
-                (p["tip"], thin),
-                *full,
-                (p["bead"], 0.92 * width),
-                ((p["bead"] + p["bottom"]) / 2, width),
-                (p["end"], width),
-            ]
+            full = [(p["flange"], width)] if bends else []
+            return [*rows, (p["tip"], thin), *full, (p["bead"], width), (p["end"], width)]
         if index == 1:
             lead = min(2.5 * self.radial.ply_gauge, (p["turn-up"] - p["wide"]) / 2)
             return [
@@ -195,6 +188,7 @@ class RadialLayers:
         edge = sh + np.array([0.2, 0.4, 0.6, 0.8]) * (p["wide"] - sh)
         wall = np.linspace(p["wide"], p["flange"], 6)
         low = [s for layer in rows.values() for s, _ in layer if s > p["flange"]]
+        low.append((p["bead"] + p["bottom"]) / 2)
         s = np.unique(np.round(np.concatenate([tread, rounded, edge, wall, low, [p["end"]]]), 6))
         inside = [layer for name, layer in rows.items() if name not in ("liner", self.radial.ply)]
         below = self.radial.ply_gauge / 2 + np.sum([thickness(layer, s) for layer in inside], axis=0)
