@@ -9,9 +9,12 @@ import pytest
 from constructions import RADIALS
 
 import tyrefem as tf
+from tyrefem.geometry.meshing import build
 from tyrefem.materials.card import material
 from tyrefem.materials.cord_layers import masses, region_thickness
 from tyrefem.materials.elasticity import Cords, MooneyRivlin, NeoHookean, Yeoh
+from tyrefem.mechanics.solid.cords import lifted_ends
+from tyrefem.mechanics.solid.tyre_body import tyre_body
 
 pytestmark = pytest.mark.fast
 
@@ -64,10 +67,16 @@ def test_cords_and_density_of_a_ply_agree(card):
 
 @pytest.mark.parametrize("name", RADIALS)
 def test_the_bead_has_the_wires_of_the_rating(name):
-    section, cords = RADIALS[name].section, tf.study(RADIALS[name].study).materials["bead"].cords
-    height = next(piece.end - piece.start for piece in section.pieces if piece.region == "bead")
-    wires = cords.ends * height * math.pi * cords.diameter**2 / 4
-    assert wires == pytest.approx(section.rating.bead_area, rel=0.03)
+    """The integral of v_c over the bundle as it is drawn and meshed."""
+    study = tf.study(RADIALS[name].study)
+    cords, rating = study.materials["bead"].cords, study.section.rating
+    mesh = build(study.section, size=RADIALS[name].size, through=1)
+    body = tyre_body(study, mesh)
+    weights = body.rings.weights[body.mesh.subdomains["bead"]]
+    (layer,) = body.parts["bead"].cords
+    radius = body.rings.points[0, body.mesh.subdomains["bead"]]
+    wires = (layer.stiffness / cords.modulus * weights / radius).sum()
+    assert wires == pytest.approx(rating.bead_area, rel=0.01)
     assert (cords.angle, cords.lift) == (0.0, False)
 
 
@@ -115,3 +124,40 @@ def test_the_tyre_has_its_standard_size(name):
     sizes = {"passenger": (0.632, 0.214), "truck": (1.044, 0.298), "aircraft": (0.5504, 0.1362)}
     section = RADIALS[name].section
     assert np.array([section.outer_diameter, section.overall_width]) == pytest.approx(sizes[name], rel=5e-3)
+
+
+def fractions(study, region, size):
+    """v_c at the Gauss points of a region, their stations, distances from the meridian, and cord section per metre."""
+    mesh, cords = build(study.section, size=size, through=1), study.materials[region].cords
+    body = tyre_body(study, mesh)
+    points = body.rings.points[:, body.mesh.subdomains[region]]
+    s, y = study.section.line.nearest(np.moveaxis(points, 0, -1))
+    ends = cords.ends * lifted_ends(cords.angle, cords.angle_radius, points[0])
+    (layer,) = body.parts[region].cords
+    return layer.stiffness / cords.modulus, s, y, ends * math.pi * cords.diameter**2 / 4
+
+
+@pytest.mark.parametrize("name", ["truck", "aircraft"])
+def test_each_leg_of_the_chafers_fabric_is_one_ply(name):
+    """The strip goes on round the bead: v_c = ends pi d^2 / (4 h), h the thickness of the leg."""
+    radial = RADIALS[name]
+    section, study = radial.section, tf.study(radial.study)
+    fraction, s, y, area = fractions(study, "chafer-fabric", radial.size)
+    inner = y < section.interfaces(s)[1]
+    assert 0.1 < inner.mean() < 0.9
+    thickness = np.where(inner, section.layers[0].thickness(s), section.layers[-1].thickness(s))
+    np.testing.assert_allclose(fraction, area / thickness, rtol=1e-6)
+    assert study.materials["chafer-fabric"].cords.plies == 1
+
+
+def test_neighbouring_layers_of_a_region_share_its_cords():
+    study = tf.study("passenger-205-55r16")
+    materials = {region: card for region, card in study.data["materials"].items() if region != "liner"}
+    thick = study.replace(
+        {"section.layers.liner.regions.0.name": "body-ply", "materials": materials, "mechanics.energy": None}
+    )
+    fraction, s, _, area = fractions(thick, "body-ply", RADIALS["passenger"].size)
+    first, second = (layer.thickness(s) for layer in thick.section.layers[:2])
+    start = thick.section.layers[0].regions.ends[0]
+    # Below the liner's end the ply is alone.
+    np.testing.assert_allclose(fraction, area / np.where(s < start, first + second, second), rtol=1e-6)

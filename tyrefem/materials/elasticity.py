@@ -134,15 +134,17 @@ Elasticity = Annotated[NeoHookean | MooneyRivlin | Yeoh, Field(discriminator="la
 class Cords(Card):
     """The cords of a cord-rubber layer; bead wires are cords at 0 deg without lift.
 
-    Volume fraction v_c = ends pi d^2 / (4 h), h the layer's thickness. With ``lift`` the angle a to the circumference
-    follows cos a / r = constant from ``angle`` at ``angle_radius``, as a green tyre is shaped over its drum.
+    Volume fraction v_c = ends pi d^2 / (4 h), h the thickness of the region's leg. A region of neighbouring layers has
+    one leg; a fabric round the bead, with other regions between its inner and outer part, has two. With ``lift`` the
+    angle a to the circumference follows cos a / r = constant from ``angle`` at ``angle_radius``, as a green tyre is
+    shaped over its drum.
 
     Parameters
     ----------
     modulus : of a cord in tension [Pa]; ``compression_modulus``: in compression, by default the same.
     diameter : of one cord [m].
-    ends : cords per metre across them, at ``angle_radius``, all plies of the layer together [1/m].
-    plies : number of cord layers for these ends.
+    ends : cords per metre across them, at ``angle_radius``, all plies of one leg together [1/m].
+    plies : number of cord layers in one leg, for these ends.
     angle : to the circumference [rad], 0 to 90 deg. angle_radius : where angle and ends are given [m].
     pairs : half of the cords at +angle, half at -angle; False at 0 and 90 deg only, where it means nothing.
     thickness_share : share of the layer's thickness that contains the cords.

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from tyrefem.cache import Cache, fingerprint
 from tyrefem.errors import InputError
 from tyrefem.estimates import work as estimate
+from tyrefem.geometry.legs import leg_thickness
 from tyrefem.geometry.meshing.expected import QUADRATIC
 from tyrefem.mechanics.solid.body import Body
 from tyrefem.mechanics.solid.compounds import Compound, neo_hookean
@@ -34,8 +35,8 @@ BUCKLING = 0.5
 #: Range of crown angles, deg, in which the cords' stiffness can be computed from the ply shear modulus.
 BIAS_ANGLES = (10.0, 80.0)
 
-#: Directions and stations of the Gauss points of a region.
-_PLACES: Cache[tuple[Array, Array]] = Cache(size=32)
+#: Directions, stations and depths of the Gauss points of a region.
+_PLACES: Cache[tuple[Array, Array, Array]] = Cache(size=32)
 
 
 def tyre_body(study: StudyData, mesh: TyreMesh | None = None) -> Body:
@@ -126,19 +127,19 @@ class _Reader:
         left = pattern.rubber
         constants = {name: left * getattr(compound, name) for name in ("c10", "c01", "c20", "c30")}
         compound = Compound(**constants, bulk=left * compound.bulk_modulus)
-        _, (along_r, along_z), s = self._places(region)
+        _, (along_r, along_z), s, _ = self._places(region)
         missing = (1 - pattern.bending(layer.thickness(s))) * compound.shear_modulus
         return compound, TreadBlocks(np.stack([along_z, -along_r]), missing)
 
     def layer(self, region: str, cords: Any) -> CordLayer:
-        points, meridian, s = self._places(region)
+        points, meridian, s, depth = self._places(region)
         if cords.lift:
             angle = lifted_angle(cords.angle, cords.angle_radius, points[0])
             ends = cords.ends * lifted_ends(cords.angle, cords.angle_radius, points[0])
         else:
             angle, ends = np.full(s.shape, cords.angle), np.full(s.shape, cords.ends)
         area = np.pi * cords.diameter**2 / 4
-        share = ends * area / self._thickness(region, s)
+        share = ends * area / self._thickness(region, s, depth)
         if share.max() > 1:
             raise InputError(
                 f"the cords fill {share.max():.0%} of the region at its narrowest place", field="cords.ends"
@@ -160,7 +161,7 @@ class _Reader:
                 f"{BIAS_ANGLES[1]:g} deg, not {np.degrees(angle):.4g} deg; give the card [cords]",
                 field="cord.crown_angle",
             )
-        points, meridian, _ = self._places(region)
+        points, meridian, _, _ = self._places(region)
         crown = float(self.study.section.line.position(np.zeros(1))[0, 0])
         # The outer half of the plies exceeds the radius of the lift law at the crown: the midline's angle is used
         # there.
@@ -172,35 +173,28 @@ class _Reader:
         rating = self.study.section.rating
         if region != "bead" or rating is None or card.youngs_modulus is None:
             return None
-        points, meridian, _ = self._places(region)
+        points, meridian, _, _ = self._places(region)
         sides = 1 if self.study.section.half else 2
         share = rating.bead_area * sides / self.study.section.area(region)
         stiffness = np.full(points.shape[1:], share * float(card.youngs_modulus.value))
         return CordLayer(np.zeros(points.shape[1:]), meridian, stiffness)
 
-    def _places(self, region: str) -> tuple[Array, Array, Array]:
-        """Gauss points (2, n, q), unit vectors along the meridian and stations |s| of a region."""
+    def _places(self, region: str) -> tuple[Array, Array, Array, Array]:
+        """Gauss points (2, n, q), unit vectors along the meridian, stations |s| and depths of a region."""
         points = self.rings.points[:, self.mesh.mesh.subdomains[region]]
         flat = points.reshape(2, -1)
 
-        def placed() -> tuple[Array, Array]:
-            s, _ = self.study.section.locate(flat.T)
-            return self.mesh.along_meridian(flat).reshape(points.shape), np.abs(s).reshape(points.shape[1:])
+        def placed() -> tuple[Array, Array, Array]:
+            s, depth = self.study.section.locate(flat.T)
+            along = self.mesh.along_meridian(flat).reshape(points.shape)
+            return along, np.abs(s).reshape(points.shape[1:]), depth.reshape(points.shape[1:])
 
         # Tyres that differ in their materials have the same places.
         return points, *_PLACES.get((self.study.section, self.mesh.section, fingerprint(flat)), placed)
 
-    def _thickness(self, region: str, s: Array) -> Array:
+    def _thickness(self, region: str, s: Array, depth: Array) -> Array:
+        """Thickness of the layer that has the cords: of one leg of the region."""
         section = self.study.section
         if section.wrapping is not None and region == section.wrap:
             return np.full(s.shape, section.wrapping.thickness)
-        pieces = [piece for piece in section.pieces if piece.region == region]
-        total = np.zeros(s.shape)
-        for piece in pieces:
-            inside = np.clip(s, piece.start, piece.end)
-            thickness = section.layers[piece.layer].thickness(inside)
-            # The Gauss point of a curved layer may project just beyond the end of the piece.
-            total += np.where(np.abs(inside - s) < 2e-3, thickness, 0.0)
-        if (total <= 0).any():
-            raise InputError(f"region '{region}' has no thickness at s = {float(s[total <= 0][0]) * 1e3:.1f} mm")
-        return total
+        return leg_thickness(section, region, s, depth)
