@@ -11,6 +11,7 @@ import tyrefem as tf
 from tyrefem.errors import InputError
 from tyrefem.geometry import SectionCard, build, load
 from tyrefem.geometry.meshing import build as mesh_of
+from tyrefem.materials.card import material
 from tyrefem.sizes import draw_size
 from tyrefem.sizes.data_book import data_book
 from tyrefem.sizes.text import section_text
@@ -190,6 +191,19 @@ def test_a_bundle_is_drawn_as_large_as_its_numbers_say(size: str) -> None:
     rules, section = draw_size(size).rules, load({"size": size})
     stated = rules["bead_height"].value * rules["bead_width"].value
     assert section.area("bead") == pytest.approx(stated, rel=0.01)
+
+
+@pytest.mark.parametrize(
+    "size", ["205/60R15", "LT235/85R16", "11R22.5", "445/65R22.5", "22x5.5R12 8PR", "46x17R20", "1400x530R23"]
+)
+def test_cords_of_a_body_ply_do_not_overlap_at_the_bead(size: str) -> None:
+    """Radial cords keep their number round the wheel: their distance falls with the radius, to a diameter at least."""
+    drawn, section = draw_size(size), load({"size": size})
+    for region in ("turn-up", "bead-wrap"):
+        cords = material(drawn.materials[region]).cords
+        least = min(float(outline[:, 0].min()) for outline in section.outline(region))
+        assert cords.diameter * cords.ends / cords.plies * cords.angle_radius / least < 1.002
+        assert cords.plies == drawn.rules["plies"].value
 
 
 def test_more_wire_than_the_bundle_holds_is_refused() -> None:

@@ -161,6 +161,14 @@ class Radial:
         ends = {"ends": f"{area / (np.pi * diameter**2 / 4) / height:.5g} 1/m", "plies": plies}
         return bead_card(base, area / (height * self.n("bead_width")), ends)
 
+    def ply_card(self, base: str, usual: int, diameter: float) -> dict[str, Any]:
+        """Card of the body plies: the ``usual`` ends per metre of a ply at the crown, fewer where its cords would
+        overlap at the bead, where the ply is narrowest. ``diameter``: of a cord, m."""
+        plies, rim = round(self.n("plies")), self.line.rim
+        least = float(self.line.at(self.places["bottom"] + self.ply_gauge)[0]) - self.ply_gauge / 2 * np.sin(rim.taper)
+        ends = plies * min(usual, int(least / self.line.crown / diameter))
+        return {"base": base, "cords": {"angle_radius": self.radius(), "ends": f"{ends} 1/m", "plies": plies}}
+
     def fabric_card(self) -> dict[str, Any]:
         """Region and card of the chafer's fabric: its angle holds at the flange's height."""
         radius = f"{(self.rim.diameter / 2 + self.rim.height) * 1e3:.2f} mm"

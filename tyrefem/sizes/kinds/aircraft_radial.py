@@ -17,8 +17,10 @@ from tyrefem.sizes.rules import Rules
 
 BEAD_FILL = 0.7
 ESTIMATE = "estimate: ordinary practice"
-#: How many times the rated pressure the plies hold, and the strength of their cords over a metre, N/m (estimates).
-SAFETY, PLY_STRENGTH, BELT_STRENGTH = 4.0, 780 * 300.0, 900 * 600.0
+#: How many times the rated pressure plies and belts hold; strength of a ply's cord, N, and of a belt, N/m (estimates).
+SAFETY, CORD_STRENGTH, BELT_STRENGTH = 4.0, 300.0, 900 * 600.0
+#: Ends of a ply at the crown, 1/m, where its cords do not overlap at the bead; diameter of its cord, m (estimates).
+PLY_ENDS, CORD = 780, 0.75e-3
 #: Ply rating per inch of width where the size names none (the data book's bias tyres: half have 1.35 to 1.97).
 RATING = 1.8
 
@@ -32,17 +34,10 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
     rule("crown_radius", 1.5 * width, "mm", f"{ESTIMATE}, 1.5 nominal widths; of the plies' line", 0.05, 20)
     rule("tread_radius", 1.8 * width, "mm", f"{ESTIMATE}, 1.8 nominal widths; of the tread's surface", 0.05, 20)
     rule("cord_angle", math.pi / 2, "deg", "radial body plies", 1.4, 1.5708)
-    plies = max(2, math.ceil(SAFETY * 0.55 * height * pressure / PLY_STRENGTH))
-    plies = round(
-        rule(
-            "plies",
-            plies,
-            "1",
-            f"estimate: cords hold {SAFETY:g} times the rated pressure, pull 0.55 p x height",
-            1,
-            20,
-        )
-    )
+    # From the bead to the crown, about 16 mm below the tread's surface, the cords move apart.
+    ends = min(PLY_ENDS, rim.diameter / 2 / (outer / 2 - 16e-3) / CORD)
+    plies = max(2, math.ceil(SAFETY * 0.55 * height * pressure / (ends * CORD_STRENGTH)))
+    rule("plies", plies, "1", f"estimate: cords hold {SAFETY:g} times the rated pressure, pull 0.55 p x height", 1, 20)
     rule("ply_gauge", 1.1e-3, "mm", f"{ESTIMATE}, nylon 0.75 mm in rubber", 5e-4)
     belts_needed = max(4, 2 * math.ceil(SAFETY * pressure * outer / 2 / BELT_STRENGTH / 2))
     belts_needed = round(
@@ -106,10 +101,7 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
     )
     rule("outer_belts_width", 0.90 * belt, "mm", f"{ESTIMATE}, 0.9 of the inner belts'", 0.02)
     rule.check_all_used()
-    ply = {
-        "base": "aircraft-body-ply",
-        "cords": {"angle_radius": radial.radius(), "ends": f"{780 * plies} 1/m", "plies": plies},
-    }
+    ply = radial.ply_card("aircraft-body-ply", PLY_ENDS, CORD)
     belt_cards = {
         belt.region: radial.belt_card(belt, "aircraft-belt", ends=f"{900 * count} 1/m", plies=count)
         for belt, count in zip(belts, (first, second), strict=True)

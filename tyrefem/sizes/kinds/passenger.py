@@ -134,11 +134,7 @@ def draw_with(
     )
     radial = with_line(radial)
     rule.check_all_used()
-    count = round(radial.n("plies"))
-    ply = {
-        "base": "passenger-body-ply",
-        "cords": {"angle_radius": radial.radius(), "ends": f"{1100 * count} 1/m", "plies": count},
-    }
+    ply = radial.ply_card("passenger-body-ply", 1100, 0.55e-3)
     cards = ("passenger-belt", "passenger-belt", "passenger-cap-ply")
     belt_cards = {belt.region: radial.belt_card(belt, card) for belt, card in zip(belts, cards, strict=True)}
     bead_card = radial.bead_material("passenger-bead", 1e-3)

@@ -129,10 +129,7 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
     )
     radial = with_line(radial, BEAD_MODULUS if wide_base else None)
     rule.check_all_used()
-    ply = {
-        "base": "truck-body-ply",
-        "cords": {"angle_radius": radial.radius(), "ends": f"{600 * round(radial.n('plies'))} 1/m"},
-    }
+    ply = radial.ply_card("truck-body-ply", 600, 0.95e-3)
     cards = ("truck-transition-belt", "truck-belt", "truck-belt", "truck-protector-belt")
     belt_cards = {belt.region: radial.belt_card(belt, card) for belt, card in zip(belts, cards, strict=True)}
     bead_card = radial.bead_material("truck-bead", 1.6e-3)
