@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shlex
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
@@ -74,7 +75,7 @@ def other_file(kind: str, folders: Collection[Path]) -> tuple[str, Path] | None:
             (other, folder / name)
             for folder in folders
             for name, other in FILES.items()
-            if other != kind and (folder / name).is_file()
+            if other != kind and os.path.isfile(folder / name)
         ),
         None,
     )
