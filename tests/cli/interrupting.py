@@ -13,6 +13,8 @@ import os
 import signal
 import subprocess
 import sys
+import tempfile
+import time
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -67,26 +69,44 @@ class Interrupted:
     """How an interrupted command ended."""
 
     code: int
-    out: str
     err: str
     group: int
 
 
-def interrupted(*arguments: str, at: str | list[str], folder: Path) -> Interrupted:
-    """Run a command line in a process of its own and interrupt it at one moment, or at several."""
+def interrupted(*arguments: str, at: str | list[str], folder: Path, new: bool = False) -> Interrupted:
+    """Run a command line in a process of its own and interrupt it at one moment, or at several.
+
+    ``new`` , or an import as the moment: in a new interpreter; else forked from one that has imported all.
+    """
     moments = [at] if isinstance(at, str) else at
+    if not new and all(":" in moment for moment in moments):
+        return _forked(arguments, moments, folder)
     with subprocess.Popen(
         [sys.executable, __file__, json.dumps(moments), *arguments],
-        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True, cwd=folder,
+        stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, start_new_session=True, cwd=folder,
         # A shell that runs the tests in the background has them ignore it.
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     ) as running:  # fmt: skip
         try:
-            out, err = running.communicate(timeout=300)
+            _, err = running.communicate(timeout=300)
         finally:
             if running.poll() is None:
                 os.killpg(running.pid, signal.SIGKILL)
-    return Interrupted(running.returncode, out, err, running.pid)
+    return Interrupted(running.returncode, err, running.pid)
+
+
+def _forked(arguments: tuple[str, ...], moments: list[str], folder: Path) -> Interrupted:
+    # Not by this module's own process, which imports nothing before the command.
+    from forked_commands import exit_code, forked
+
+    with tempfile.NamedTemporaryFile(prefix="stderr-") as file:
+        number = forked(arguments, folder, file.name, moments=moments)
+        until = time.monotonic() + 300
+        while (code := exit_code(number)) is None:
+            if time.monotonic() > until:
+                os.killpg(number, signal.SIGKILL)
+            time.sleep(0.01)
+        return Interrupted(code, Path(file.name).read_text(encoding="utf-8"), number)
 
 
 def _main() -> None:

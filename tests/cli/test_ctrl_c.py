@@ -114,7 +114,7 @@ def test_ctrl_c_twice_says_one_thing(here: Path) -> None:
     assert {file.name for file in (here / "out").iterdir() if file.is_file()} == TABLES
     # In the march, and then while Python ends.
     moments = ["concurrent.futures.process:ProcessPoolExecutor.submit:2", "tyrefem.processes:end_children:1"]
-    assert clean(here, interrupted("sweep", NASA, *SPEEDS, "--workers", "2", at=moments, folder=here))
+    assert clean(here, interrupted("sweep", NASA, *SPEEDS, "--workers", "2", at=moments, folder=here, new=True))
 
 
 def test_a_campaign_keeps_its_cases(here: Path) -> None:
@@ -158,13 +158,14 @@ def test_blind_and_isolability_go_on(here: Path) -> None:
     coarse = ("--workers", "2", "--set", "mesh.size=12 mm", "--set", "mesh.element=P1", "--out", "out")
     # The third answer of a worker is waited for when the first two are kept.
     third = "tyrefem.variants.answer_store:AnswerStore.keep:3"
-    line = clean(here, interrupted("isolability", "hidden-effect", *coarse, at=third, folder=here))
+    line = clean(here, interrupted("isolability", "hidden-effect", *coarse, at=third, folder=here, new=True))
     assert line == "tyrefem: interrupted; 2 finished simulations are kept; the same command resumes from there\n"
     # The two have the same runs: what the first has finished serves the second.
     (here / "out").rename(here / "blind")
     (here / "blind/summary.json").unlink()
     coarse, last = (*coarse[:-1], "blind"), "tyrefem.diagnose.forward.evaluations:Evaluations.of:1"
-    line = clean(here, interrupted("blind", "hidden-effect", "--cases", "1", "--force", *coarse, at=last, folder=here))
+    blind = ("blind", "hidden-effect", "--cases", "1", "--force")
+    line = clean(here, interrupted(*blind, *coarse, at=last, folder=here, new=True))
     assert line == "tyrefem: interrupted; 0 of 1 cases are finished; the same command resumes from there\n"
     assert len(list((here / "blind/.progress").rglob("*.npz"))) == 2
 
@@ -199,7 +200,7 @@ def test_an_interruption_that_a_library_swallows_is_sent_again(here: Path) -> No
 def test_workers_of_an_interrupted_command_are_gone_and_silent(here: Path) -> None:
     # Interrupted as soon as the first two workers are started, and with them: they have imported nothing yet.
     moment = "concurrent.futures.process:ProcessPoolExecutor.submit:3"
-    done = interrupted("sweep", NASA, *SPEEDS, "--workers", "2", at=moment, folder=here)
+    done = interrupted("sweep", NASA, *SPEEDS, "--workers", "2", at=moment, folder=here, new=True)
     clean(here, done)
     psutil.wait_procs([process for process in psutil.process_iter() if _of(process, done.group)], timeout=10)
     assert not [process for process in psutil.process_iter() if _of(process, done.group)]
@@ -231,7 +232,7 @@ def test_a_comparison_goes_on(here: Path) -> None:
     coarse = [word for change in ("size=12 mm", "element=P1") for word in ("--set", f"mesh.{change}")]
     coarse += ["--set", "output.every=20 s", "--reduced", "never"]
     command = ("compare", "example-validation", *coarse, "--workers", "2", "--out", "out")
-    done = interrupted(*command, at="tyrefem.variants.answer_store:AnswerStore.keep:6", folder=here)
+    done = interrupted(*command, at="tyrefem.variants.answer_store:AnswerStore.keep:6", folder=here, new=True)
     lines = done.err.splitlines()
     assert done.code == 130
     assert lines[0].startswith("tyrefem: 45 simulations: 3 drives as driven; 42 with one uncertain input changed")

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import atexit
-import functools
-import json
 import os
 import resource
 import signal
@@ -15,9 +12,9 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from every_command import Command, commands
+from forked_commands import exit_code, forked
 
 #: Commands that answer at once, by their first word; the others compute something.
 AT_ONCE = {"check", "list", "new", "road", "schema", "show", "slide"}
@@ -36,19 +33,18 @@ class Process:
 
 
 def started(command: Command, out: Path, *, largest_file: int = 0, new: bool = False) -> Process:
-    """The command as a process: ``new`` or one of `NEW`: of a new interpreter; else forked (`command_server.py`).
+    """The command as a process: ``new`` or one of `NEW`: of a new interpreter; else forked (`forked_commands.py`).
 
     ``largest_file`` : bytes that no file may exceed.
     """
     number, name = tempfile.mkstemp(prefix="stderr-")
     os.close(number)
     if not (new or command.words in NEW):
-        request = {"line": command.line(out), "folder": os.getcwd(), "err": name, "largest_file": largest_file}
-        pid = _asked(environment=dict(os.environ), **request)
+        pid = forked(command.line(out), os.getcwd(), name, largest_file=largest_file)
         codes: list[int] = []
 
         def poll() -> int | None:
-            if not codes and (code := _asked(ended=pid)) is not None:
+            if not codes and (code := exit_code(pid)) is not None:
                 codes.append(code)
             return codes[0] if codes else None
 
@@ -68,28 +64,6 @@ def started(command: Command, out: Path, *, largest_file: int = 0, new: bool = F
             stderr=err, start_new_session=True, preexec_fn=begin, env=os.environ | short,
         )  # fmt: skip
     return Process(running.pid, running.poll, Path(name))
-
-
-@functools.cache
-def _server() -> subprocess.Popen[str]:
-    """The process that forks; it ends with the tests, when its stdin does."""
-    threads = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
-    server = subprocess.Popen(
-        [sys.executable, str(Path(__file__).with_name("command_server.py"))], stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE, text=True, env=os.environ | threads, cwd=Path(__file__).parent,
-    )  # fmt: skip
-    atexit.register(server.communicate)
-    return server
-
-
-def _asked(**request: Any) -> Any:
-    """The server's answer."""
-    server = _server()
-    assert server.stdin is not None
-    assert server.stdout is not None
-    server.stdin.write(json.dumps(request) + "\n")
-    server.stdin.flush()
-    return json.loads(server.stdout.readline())
 
 
 def after_start(out: Path) -> bool:

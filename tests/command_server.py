@@ -2,13 +2,15 @@
 
 The commands are true processes, with a group and signals of their own; only the time of their imports is saved. A
 line of stdin is a request in JSON, a line of stdout its answer: ``{"line": [...], ...}`` starts a command and gives its
-process number, ``{"ended": number}`` gives its exit code, or null while it runs.
+process number, ``{"ended": number}`` gives its exit code, or null while it runs. `forked_commands.py` asks it.
 """
 
 from __future__ import annotations
 
 import atexit
+import functools
 import importlib
+import itertools
 import json
 import os
 import pkgutil
@@ -31,6 +33,28 @@ def load() -> None:
                  "rich.console", "scipy.optimize", "scipy.interpolate", "scipy.stats"):  # fmt: skip
         importlib.import_module(name)
     registry()
+
+
+def interrupt_at(moment: str) -> None:
+    """Send Ctrl-C to this group at the nth call of a function: ``module:function:n``, n from 1."""
+    name, function, number = moment.split(":")
+    module = importlib.import_module(name)
+    *outer, last = function.split(".")
+    owner = functools.reduce(getattr, outer, module)
+    original = getattr(owner, last)
+    calls = itertools.count(1)
+
+    @functools.wraps(original)
+    def counted(*given: Any, **named: Any) -> Any:
+        if next(calls) == int(number):
+            os.killpg(os.getpgrp(), signal.SIGINT)
+        return original(*given, **named)
+
+    setattr(owner, last, counted)
+    # Modules that have imported it by its name.
+    for other in list(sys.modules.values()):
+        for alias in [alias for alias, value in vars(other).items() if value is original]:
+            setattr(other, alias, counted)
 
 
 def begin(request: dict[str, Any]) -> int:
@@ -58,6 +82,8 @@ def _run(request: dict[str, Any]) -> NoReturn:
     if request["largest_file"]:
         resource.setrlimit(resource.RLIMIT_FSIZE, (request["largest_file"],) * 2)
         sys.dont_write_bytecode = True
+    for moment in request["moments"]:
+        interrupt_at(moment)
     sys.argv = ["tyrefem", *request["line"]]
     from tyrefem.cli import main
 
