@@ -115,6 +115,7 @@ def thermocouple_walk() -> ThermocoupleWalk:
     import pandas as pd
 
     import tyrefem as tf
+    from tyrefem.diagnose.settings import DiagnosisSettings
     from tyrefem.effects import catalogue
 
     excluded = [name for name in catalogue() if name not in CANDIDATES]
@@ -123,10 +124,11 @@ def thermocouple_walk() -> ThermocoupleWalk:
     times = np.arange(5.0, 120.0, 10.0)
     columns = {f"{name} [degC]": np.interp(times, computed["time_s"], computed[name]) for name in SENSORS}
     columns[f"{SENSORS[0]} [degC]"][NUMBER] = READING
+    settings = DiagnosisSettings(mesh_size=CHANGES["mesh.size"], largest=1, looks=1)
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "run.csv"
         pd.DataFrame({"time [s]": times, **columns}).to_csv(file, index=False)
         with Follower(holds_reading) as follower:
-            study.diagnose(file, largest=1, looks=1, rerun=False, verdict_only=True)
+            study.diagnose(file, settings=settings, rerun=False, verdict_only=True)
     steps = (replace(step, module=whole(step.module), taker=whole(step.taker)) for step in follower.steps)
     return ThermocoupleWalk(tuple(steps))

@@ -9,6 +9,7 @@ from hidden import Case
 
 from tyrefem.diagnose.data.noise import ReadingNoise, noise_of
 from tyrefem.diagnose.data.runs import MeasuredDrive, MeasuredSensor, with_noise_of_data
+from tyrefem.diagnose.settings import DiagnosisSettings
 from tyrefem.measured import MeasuredRun
 
 SENSORS = ("crown", "shoulder", "sidewall", "bead")
@@ -128,7 +129,9 @@ def quiet_runs(case: Case, noise: float, wave: float) -> list[MeasuredRun]:
 
 
 def test_a_stated_noise_above_that_of_the_data_does_not_disarm_the_misfit_test(case: Case) -> None:
-    result = case.study.diagnose(quiet_runs(case, 0.05, 0.5), largest=1, looks=1, known=case.diagnosis.gap.responses)
+    few = DiagnosisSettings(largest=1, looks=1, beside_sets=1, discrepancy_sizes=(1.0,))
+    known = case.diagnosis.gap.responses
+    result = case.study.diagnose(quiet_runs(case, 0.05, 0.5), settings=few, known=known, rerun=False, verdict_only=True)
     # By the stated 0.5 K the wave would drown: rms 0.35 K.
     assert result.stated_noise == 0.5
     assert result.noise == pytest.approx(0.05, rel=0.1)
