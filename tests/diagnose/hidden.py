@@ -12,6 +12,7 @@ import tomli_w
 
 import tyrefem as tf
 from tyrefem.diagnose import DiagnosisData
+from tyrefem.diagnose.settings import DiagnosisSettings
 from tyrefem.effects import catalogue
 
 #: Few rivals make a short test: all of them heat or cool the tread, or move a reading.
@@ -23,6 +24,9 @@ RUNS: dict[str, dict[str, Any]] = {
 }
 HELD_OUT = "fast"
 NOISE, END = 0.5, 160.0
+#: Meshes of a quick study and of its data; fits that go with them. The verdicts are those of finer meshes.
+COARSE_MESH, FINER_MESH = "8 mm", "6 mm"
+COARSE = DiagnosisSettings(mesh_size=COARSE_MESH, largest=1, looks=1)
 #: What is hidden in the measurements, K; trials whose sensitivities are finished when the diagnosis is interrupted.
 WARMER, FINISHED = 25.0, 2
 
@@ -40,14 +44,14 @@ class Case:
     resumed: int
 
 
-def study(folder: Path) -> tf.Study:
+def study(folder: Path, mesh: str = "4 mm") -> tf.Study:
     """The study as its owner wrote it, saved in a folder."""
     changes = {
         "title": "Three thermocouples",
         "drive": {
             "speed": "20 mph", "load": "2700 lbf", "pressure": "83 psi", "ambient": "25 degC", "duration": f"{END} s",
         },
-        "mesh.size": "4 mm",
+        "mesh.size": mesh,
         "sensors": {
             "crown-outer": {"s": "0.33 in", "depth": "0.63 in", "lag": "2 s"},
             "shoulder-inner": {"s": "2.00 in", "depth": "0.07 in", "lag": "2 s"},
@@ -65,10 +69,10 @@ def study(folder: Path) -> tf.Study:
     return tf.study(file)
 
 
-def measure(owner: tf.Study, effects: list[dict[str, Any]], seed: int = 11) -> None:
+def measure(owner: tf.Study, effects: list[dict[str, Any]], mesh: str = "3 mm") -> None:
     """Write the tables: truth on a finer mesh, with hidden effects and noise."""
-    rng = np.random.default_rng(seed)
-    truth = owner.replace({"mesh.size": "3 mm", "effects": effects, "measured": []})
+    rng = np.random.default_rng(11)
+    truth = owner.replace({"mesh.size": mesh, "effects": effects, "measured": []})
     assert owner.folder is not None
     for name, drive in RUNS.items():
         readings = truth.with_drive(drive).run().readings

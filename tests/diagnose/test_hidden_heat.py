@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hidden import measure, study
+from hidden import COARSE, COARSE_MESH, FINER_MESH, measure, study
 
 from tyrefem.diagnose.verdicts.verdict import IDENTIFIED, PARTLY, UNEXPLAINED
 from tyrefem.diagnose.words.heat import inside_share
@@ -21,9 +21,9 @@ PLACE = {"station": "100 mm", "width": "13 mm"}
 
 
 def test_a_sidewall_that_is_cooled_from_outside_is_a_sink(tmp_path: Path) -> None:
-    owner = study(tmp_path / "study")
-    measure(owner, [{"name": "missing-flux", **PLACE, "into": "-1500 W/m**2"}])
-    d = owner.diagnose(largest=1, looks=1, rerun=False, verdict_only=True)
+    owner = study(tmp_path / "study", COARSE_MESH)
+    measure(owner, [{"name": "missing-flux", **PLACE, "into": "-1500 W/m**2"}], FINER_MESH)
+    d = owner.diagnose(settings=COARSE, rerun=False, verdict_only=True)
     assert d.verdict == UNEXPLAINED
     assert d.missing.over_time is not None
     largest = d.missing.over_time.clear[0]
@@ -37,9 +37,9 @@ def test_a_sidewall_that_is_cooled_from_outside_is_a_sink(tmp_path: Path) -> Non
 def test_heat_that_begins_late_is_dated_and_its_draft_effect_is_identified(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    owner = study(tmp_path / "study")
-    measure(owner, [{"name": "missing-heat", **PLACE, "heat": "400 kW/m**3", "begins": "70 s"}])
-    d = owner.diagnose(largest=1, looks=1)
+    owner = study(tmp_path / "study", COARSE_MESH)
+    measure(owner, [{"name": "missing-heat", **PLACE, "heat": "400 kW/m**3", "begins": "70 s"}], FINER_MESH)
+    d = owner.diagnose(settings=COARSE)
     d.save(tmp_path / "out")
     assert pickle.loads(pickle.dumps(d)).to_dict() == d.to_dict()
     missing = json.loads((tmp_path / "out" / "verdict.json").read_text(encoding="utf-8"))["missing_heat"]
@@ -103,7 +103,7 @@ def test_heat_that_begins_late_is_dated_and_its_draft_effect_is_identified(
     assert law["draft_effect"] == f"effects/{draft.name}"
     assert any(f"effects/{draft.name}" in sentence for sentence in verdict_words(d))
     assert "inferred from" in draft.read_text(encoding="utf-8")
-    second = owner.diagnose(largest=1, looks=1, effects=draft.parent)
+    second = owner.diagnose(settings=COARSE, effects=draft.parent)
     assert second.verdict == IDENTIFIED
     (member,) = second.best.members
     assert member.name == draft.stem.replace("_", "-")
