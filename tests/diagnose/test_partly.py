@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 
 import pytest
-from hidden import WARMER, measure, study
+from hidden import COARSE, COARSE_MESH, FINER_MESH, WARMER, measure, study
 
 import tyrefem as tf
 from tyrefem.diagnose import DiagnosisData
@@ -23,7 +23,7 @@ SHAPE = {1: 0.3, 2: 0.2}
 @pytest.fixture(scope="module")
 def hidden(tmp_path_factory: pytest.TempPathFactory) -> tuple[DiagnosisData, Path]:
     folder = tmp_path_factory.mktemp("partly")
-    owner = study(folder / "study")
+    owner = study(folder / "study", COARSE_MESH)
     # Exact base numbers and sensors cannot imitate the strain energy.
     sure = {f"sensors.{name}.{key}": value for name in owner.sensors for key, value in SURE.items()}
     numbers = ("loss_tangent", "conductivity", "specific_heat")
@@ -31,8 +31,8 @@ def hidden(tmp_path_factory: pytest.TempPathFactory) -> tuple[DiagnosisData, Pat
     changes = sure | {"uncertainty": cards, "diagnosis.film_sd": 0.02}
     owner = tf.study(owner.replace(changes).save(folder / "study" / "sure.toml"))
     shapes = [{"name": "heat-shape", "half_waves": n, "log_factor": x} for n, x in SHAPE.items()]
-    measure(owner, [{"name": "hot-road", "warmer_by": f"{WARMER} delta_degC"}, *shapes])
-    diagnosis = owner.diagnose(largest=1, looks=1)
+    measure(owner, [{"name": "hot-road", "warmer_by": f"{WARMER} delta_degC"}, *shapes], FINER_MESH)
+    diagnosis = owner.diagnose(settings=COARSE)
     diagnosis.save(folder / "out")
     return diagnosis, folder / "out"
 

@@ -12,7 +12,7 @@ import shlex
 import shutil
 from collections.abc import Iterator
 from dataclasses import replace
-from itertools import groupby
+from itertools import groupby, pairwise
 from pathlib import Path
 
 import pytest
@@ -21,12 +21,15 @@ from docs_record import Record, Row, to_be_run
 from run_docs_commands import Outcome, outcomes
 from test_docs_pages import ROOT, tyrefem_arguments
 
+import tyrefem as tf
 from tyrefem.cli import main
 
 #: Words of a study's name -> what makes its mechanics and its run short.
+LINEAR = ["--set", "mesh.size=14 mm", "--set", "mesh.element=P1", "--set", "numerics.tolerance=0.25 K"]
 COARSE = {
-    "nasa-": ["--set", "mesh.size=14 mm"],
-    "example-": ["--set", "mesh.size=14 mm"],
+    "nasa-22x5.5": [*LINEAR, "--set", "drive.duration=60 s"],
+    "nasa-": LINEAR,
+    "example-": LINEAR,
     "passenger-": ["--set", "mesh.size=18 mm", "--set", "mechanics.motion=linear"],
     "studies/passenger-": ["--set", "mesh.size=18 mm", "--set", "mechanics.motion=linear"],
 }
@@ -97,10 +100,6 @@ def why_elsewhere(command: str) -> str | None:
     return EXCEPTIONS.why_left_out(command) or next(matching, None)
 
 
-#: Commands that run here; those that differ in the place of their results alone run once.
-HERE = list({without_place(each): each for each in reversed(COMMANDS) if why_elsewhere(each) is None}.values())[::-1]
-
-
 def short(command: str) -> list[str]:
     """The arguments of a command, with what makes it short."""
     arguments = shlex.split(command)[1:]
@@ -109,16 +108,52 @@ def short(command: str) -> list[str]:
         more += next((flags for name, flags in COARSE.items() if arguments[1].startswith(name)), [])
         more += [flag for flag in ("--no-pictures", "--no-vtk") if flag not in arguments and arguments[0] == "run"]
     for begin, flags in MORE.items():
-        more += flags if command.startswith(begin) and flags[0] not in arguments else []
+        more += flags if command.startswith(begin) else []
     if arguments[0] in ("compare", "sweep", "explore") and "--workers" not in arguments:
         more += ["--workers", "1"]
     return [*arguments, *more]
 
 
+#: Options that leave something out.
+LESS = {"--no-pictures", "--no-vtk"}
+
+
+def what_runs(command: str) -> tuple[str, ...]:
+    """What a command does when it is short: its words, the last value of each setting, not the place of its results."""
+    words = shlex.split(without_place(shlex.join(["tyrefem", *short(command)])))
+    values = [place + 1 for place, word in enumerate(words) if word == "--set"]
+    last = {words[place].partition("=")[0]: words[place] for place in values}
+    left = [word for place, word in enumerate(words) if word not in LESS | {"--set"} and place not in values]
+    return (*left, *sorted(last.values()))
+
+
+#: Commands that run here; those that do the same when they are short run once, by the one that leaves out least.
+HERE = list({what_runs(each): each for each in reversed(COMMANDS) if why_elsewhere(each) is None}.values())[::-1]
+SAME = [each for each in COMMANDS if why_elsewhere(each) is None and each not in HERE]
+
+
+@pytest.mark.fast
+def test_commands_that_do_the_same_run_once() -> None:
+    runs = ["run a --set b=1", "run a --set b=2 --out c", "run a --set b=1 --set b=2 --no-vtk"]
+    first, second, third = (what_runs(f"tyrefem {each}") for each in runs)
+    assert first != second == third
+    assert {what_runs(each) for each in SAME} <= {what_runs(each) for each in HERE}
+
+
+@pytest.mark.fast
+@pytest.mark.parametrize("command", [each for each in SAME if " --set " in each])
+def test_the_settings_of_a_command_that_runs_as_another_are_those_of_its_study(command: str) -> None:
+    words = shlex.split(command)
+    changes = dict(after.split("=", 1) for word, after in pairwise(words) if word == "--set")
+    assert changes
+    tf.study(words[2], changes)
+
+
 @pytest.mark.fast
 def test_every_command_is_one_of_tyrefem_or_has_a_reason() -> None:
     assert len(COMMANDS) > 190
-    assert len(HERE) > 65
+    assert len(HERE) > 50
+    assert len(HERE) + len(SAME) > 65
     assert [command for command in HERE if not command.startswith("tyrefem ")] == []
 
 
