@@ -109,7 +109,7 @@ def test_a_reduced_model_follows_changed_cycles() -> None:
 
 def test_a_reduced_model_follows_a_loss_that_changes_the_strain_energy() -> None:
     """Beside cords of a loss of their own, tan delta of the rubber changes heat and strain energy: two patterns."""
-    study = tf.study("aircraft-radial", {**SHORT, "mesh.size": "10 mm", "mechanics.motion": "linear"})
+    study = tf.study("aircraft-radial", {**SHORT, "mesh.size": "16 mm", "mechanics.motion": "linear"})
     key = "materials.inner-belts.loss_tangent.value"
     study = study.replace({"uncertainty": {key: 0.3}})
     (table,) = tables(study, {"as driven": {}})

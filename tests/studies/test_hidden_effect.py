@@ -7,6 +7,7 @@ import pytest
 from hidden_effect_truth import AMPLITUDE, HIDDEN, TABLE, truth
 
 import tyrefem as tf
+from tyrefem.diagnose.settings import DiagnosisSettings
 from tyrefem.measured import read_table
 
 
@@ -19,7 +20,9 @@ def test_the_table_is_what_the_truth_says(request: pytest.FixtureRequest) -> Non
 
 
 def test_the_hidden_effect_is_found() -> None:
-    diagnosis = tf.study("hidden-effect").diagnose(largest=1, rerun=False, looks=1)
+    diagnosis = tf.study("hidden-effect").diagnose(
+        settings=DiagnosisSettings(mesh_size="8 mm", largest=1, looks=1), rerun=False
+    )
     assert diagnosis.verdict == "identified"
     assert [member.name for member in diagnosis.judgement.best.members] == [HIDDEN]
     (amplitude,) = diagnosis.judgement.best.members[0].amplitudes
