@@ -19,6 +19,9 @@ os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 if "PYTEST_XDIST_WORKER" in os.environ:
     for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
         os.environ.setdefault(_name, "1")
+    # Likewise one process where a command takes one per core: its workers would import everything anew. Tests of
+    # workers say how many.
+    os.cpu_count = lambda: 1
 
 # The same examples at every run; HYPOTHESIS_PROFILE=explore looks at new ones.
 settings.register_profile("reproducible", derandomize=True, deadline=None)
