@@ -6,6 +6,7 @@ Three pages have tests of their own, which also assert what they say: docs/resul
 
 from __future__ import annotations
 
+import functools
 import re
 import shutil
 import sys
@@ -19,6 +20,7 @@ import pytest
 import tyrefem
 from tyrefem.api import Study, studies
 from tyrefem.cli import main
+from tyrefem.diagnose.settings import DiagnosisSettings
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tests" / "hostile"))
@@ -48,6 +50,8 @@ SMALL = {"mesh.size": "18 mm", "mesh.element": "P1", "mechanics.strain": "fem", 
          "materials.tread": "rubber-tread-aircraft"}  # fmt: skip
 #: Pages whose diagnosis is that of the smallest study of the tests, with two candidate effects.
 DIAGNOSED = {"docs/diagnosis.md", "docs/method/diagnosis.md", "docs/plan.md", "README.md"}
+#: Fits of these diagnoses and plans are on the mesh of that study.
+FITS = DiagnosisSettings(mesh_size="15 mm")
 BIAS = {"docs/life.md", "docs/mechanics.md", "docs/two-way.md", "docs/wear.md", "README.md"}
 
 
@@ -99,6 +103,9 @@ def test_the_python_of_a_page_runs(page: str, tmp_path: Path, monkeypatch: pytes
     study = coarse(page, tmp_path)
     for module in (tyrefem, tyrefem.api, studies):
         monkeypatch.setattr(module, "study", study, raising=False)
+    if page in DIAGNOSED:
+        for name in ("diagnose", "plan"):
+            monkeypatch.setattr(Study, name, functools.partialmethod(getattr(Study, name), settings=FITS))
     monkeypatch.chdir(tmp_path)
     monkeypatch.syspath_prepend(tmp_path)
     names: dict[str, Any] = {"tf": tyrefem, "np": np, **BEFORE.get(page, lambda _: {})(tmp_path)}
