@@ -31,7 +31,7 @@ def leg_thickness(section: Layered, region: str, s: Array, depth: Array) -> Arra
     >>> section = load("truck-295-80r22.5")
     >>> s = np.full(2, section.line.length - 0.02)
     >>> leg_thickness(section, "chafer-fabric", s, np.array([0.001, section.total_thickness(s)[1] - 0.001])).round(4)
-    array([0.0024, 0.0041])
+    array([0.0024, 0.0035])
     """
     shape = (len(section.layers), *s.shape)
     thickness, beyond = np.zeros(shape), np.full(shape, np.inf)
