@@ -58,11 +58,19 @@ def read_cases(path: Path) -> tuple[Case, ...]:
     if twice is not None:
         raise InputError(f"line {rows[0][0]}: the heading has column '{twice}' twice", file=path)
     cases = [_case(number, cells, columns, path) for number, cells in rows[1:]]
-    seen: dict[str, int] = {}
+    seen: dict[str, Case] = {}
     for case in cases:
-        if case.name in seen:
-            raise InputError(f"case '{case.name}' stands in lines {seen[case.name]} and {case.line}", file=path)
-        seen[case.name] = case.line
+        # Every case has a folder of its name; file systems of Windows and macOS do not tell A from a.
+        earlier = seen.setdefault(case.name.casefold(), case)
+        if earlier is case:
+            continue
+        if earlier.name == case.name:
+            raise InputError(f"case '{case.name}' stands in lines {earlier.line} and {case.line}", file=path)
+        raise InputError(
+            f"cases '{earlier.name}' and '{case.name}', lines {earlier.line} and {case.line}, differ only in capital "
+            "letters: on Windows and macOS their folders would be one",
+            file=path,
+        )
     return tuple(cases)
 
 
