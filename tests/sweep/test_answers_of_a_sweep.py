@@ -462,6 +462,43 @@ def test_what_a_steeper_loss_tangent_does_is_in_the_words(swept: Sweep) -> None:
     assert f"{int(swept.table['feasible'].sum())} of 6 variants keep the limits" in words
 
 
+def linear(numbers: list[float]) -> float:
+    """A tyre that is 3 K hotter for each m/s, and 7 K cooler for each kN."""
+    return 20.0 + 3.0 * numbers[0] - 7.0 * numbers[1]
+
+
+@pytest.mark.parametrize(("sample", "count"), [("latin-hypercube", 5), ("latin-hypercube", 40), ("sobol", 8)])
+def test_main_effects_of_a_random_sample_are_those_of_the_answer(tyre: Study, sample: str, count: int) -> None:
+    vary = {"drive.speed": ("5 m/s", "20 m/s"), "drive.load": ("2 kN", "4 kN")}
+    plan = plan_of(tyre, vary, sample=sample, count=count)
+    table = sweep(plan, scheduler=Formula(linear), reduced="never")
+    effects = main_effects(table, "hottest_degC").set_index("number")
+    for number, slope in (("drive.speed [m/s]", 3.0), ("drive.load [kN]", -7.0)):
+        row = effects.loc[number]
+        assert row["effect"] == pytest.approx(slope * (row["high"] - row["low"]), rel=1e-9)
+    assert len(effects) == 2
+
+
+def test_a_grid_with_a_failed_variant_has_the_main_effects_of_its_answer(tyre: Study) -> None:
+    plan = plan_of(tyre, {"drive.speed": ("5 m/s", "20 m/s", 3), "drive.load": ["2 kN", "3 kN", "4 kN"]})
+    whole = sweep(plan, scheduler=Formula(linear), reduced="never")
+    outcomes = {**dict(whole.outcomes), 0: Failed("no equilibrium")}
+    for each in (whole, Sweep(plan, outcomes)):
+        effects = main_effects(each, "hottest_degC").set_index("number")["effect"]
+        assert effects["drive.speed [m/s]"] == pytest.approx(45.0)
+        assert effects["drive.load [kN]"] == pytest.approx(-14.0)
+
+
+def test_too_few_variants_state_no_main_effects(tyre: Study) -> None:
+    vary = {"drive.speed": ("5 m/s", "20 m/s"), "drive.load": ("2 kN", "4 kN"), "drive.pressure": ("70 psi", "90 psi")}
+    table = sweep(plan_of(tyre, vary, sample="latin-hypercube", count=4), scheduler=Formula(linear), reduced="never")
+    assert main_effects(table, "hottest_degC").empty
+    words = Responses(table).words
+    assert "No main effects on the highest temperature: 4 variants do not tell 3 numbers apart." in words
+    assert not any(line.startswith("Main effects") for line in words)
+    assert list(figures(Responses(table)))
+
+
 def test_names_of_answers_are_known_before_anything_runs(swept: Sweep, tyre: Study) -> None:
     text = {"hottest_region"}
     assert set(answer_names(tyre, 35.0)) == set(swept.answers) - text

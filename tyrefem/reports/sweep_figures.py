@@ -70,7 +70,8 @@ def _responses(answer: Responses) -> Iterator[tuple[str, str, Figure]]:
     averaged = swept.plan.sampling.get("sample") == "grid" and len(swept.plan.varied) > 2
     mean = "; mean over the other numbers" if averaged else ""
     for name in judged(swept, answer.wanted):
-        order = [number for number in main_effects(swept, name)["number"] if number in axes]
+        largest = [number for number in main_effects(swept, name)["number"] if number in axes]
+        order = [*largest, *(number for number in axes if number not in largest)]
         for x, y in itertools.combinations(order[:MOST_MAPS], 2):
             yield _file("map", name, x, y), f"{name_of(name)} over {x} and {y}{mean}", response_map(swept, x, y, name)
         for x in order[:MOST_CURVES]:

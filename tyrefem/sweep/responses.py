@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 #: Default answers in pictures and tables.
 DEFAULT_ANSWERS = ("hottest_degC", "rolling_resistance_coefficient")
-#: The effect of a number with more values than this comes from a linear fit, else from means at its levels.
+#: The effect of a number with more values than this is a straight line, also in a grid.
 MOST_LEVELS = 12
 
 
@@ -47,41 +47,60 @@ def numeric(sweep: Sweep) -> list[str]:
 def main_effects(sweep: Sweep, answer: str) -> pd.DataFrame:
     """Main effect of each varied number on an answer, averaged over the others; the largest first.
 
-    Columns ``number``, ``low``, ``high`` (its ends; of a card or word the values with the lowest and highest mean) and
-    ``effect``, the answer's change from low to high. Effects come from means at the levels if these are few, else from
-    a linear fit to all numbers.
+    Least squares of answer = mean + sum of an effect of each number: a straight line over a number of a range that is
+    no grid or has many values, else an effect of each value. On a whole grid these are the means at the values.
+
+    Columns ``number``, ``low``, ``high`` (its ends; of a card or word the values with the lowest and highest effect)
+    and ``effect``, the answer's change from low to high. No rows: the variants are too few to tell the numbers apart.
     """
     import pandas as pd
 
-    table, rows = finished(sweep, [answer]).dropna(subset=[answer]), []
-    lines = [name for name in numeric(sweep) if table[name].nunique() > MOST_LEVELS]
-    slopes = _slopes(table, lines, answer)
+    table = finished(sweep, [answer]).dropna(subset=[answer])
+    axes, grid = numeric(sweep), sweep.plan.sampling.get("sample") == "grid"
+    terms = []
     for varied in sweep.plan.varied:
         name = varied.heading
-        if name not in table or table[name].nunique() < 2:
-            continue
-        if name in slopes:
-            low, high = float(table[name].min()), float(table[name].max())
-            rows.append({"number": name, "low": low, "high": high, "effect": slopes[name] * (high - low)})
-            continue
-        means = table.groupby(name)[answer].mean()
-        values = means.to_numpy(dtype=float)
-        first, last = (0, -1) if name in numeric(sweep) else (int(values.argmin()), int(values.argmax()))
-        effect = float(values[last] - values[first])
-        rows.append({"number": name, "low": means.index[first], "high": means.index[last], "effect": effect})
+        if name in table and table[name].nunique() > 1:
+            ranged = not grid and not varied.values
+            line = name in axes and (ranged or table[name].nunique() > MOST_LEVELS)
+            terms.append(_Term(name, table[name].to_numpy(), ordered=name in axes, line=line))
+    rows = _effects(terms, table[answer].to_numpy(dtype=float)) if terms else []
     effects = pd.DataFrame(rows, columns=["number", "low", "high", "effect"])
     order = effects["effect"].abs().sort_values(ascending=False).index
     return effects.loc[order].reset_index(drop=True)
 
 
-def _slopes(table: pd.DataFrame, names: list[str], answer: str) -> dict[str, float]:
-    if not names or len(table) <= len(names) + 1:
-        return {}
-    x = table[names].to_numpy(dtype=float)
-    scaled = (x - x.mean(axis=0)) / x.std(axis=0)
-    values = table[answer].to_numpy(dtype=float)
-    solution, *_ = np.linalg.lstsq(np.column_stack([np.ones(len(x)), scaled]), values, rcond=None)
-    return dict(zip(names, (solution[1:] / x.std(axis=0)).tolist(), strict=True))
+class _Term:
+    """The part of a varied number in the sum of effects: ``columns`` of the least-squares matrix, (variants, k)."""
+
+    def __init__(self, name: str, values: Any, *, ordered: bool, line: bool) -> None:
+        self.name, self.ordered, self.line = name, ordered, line
+        self.levels = sorted(set(values.tolist()), key=lambda value: (isinstance(value, str), value))
+        if line:
+            span = self.levels[-1] - self.levels[0]
+            self.columns = ((values.astype(float) - self.levels[0]) / span)[:, None]
+        else:
+            self.columns = (values[:, None] == np.array(self.levels[1:], dtype=object)).astype(float)
+
+    def row(self, solution: Any) -> dict[str, Any]:
+        """Its row, from the effects of its columns."""
+        effects = np.concatenate([[0.0], solution])
+        first, last = (0, -1) if self.ordered else (int(effects.argmin()), int(effects.argmax()))
+        ends = {"low": self.levels[first], "high": self.levels[last]}
+        return {"number": self.name, **ends, "effect": float(effects[last] - effects[first])}
+
+
+def _effects(terms: Sequence[_Term], values: Any) -> list[dict[str, Any]]:
+    """The rows of all terms; none if the variants cannot tell them apart."""
+    matrix = np.column_stack([np.ones(len(values)), *(term.columns for term in terms)])
+    spare = 1 if any(term.line for term in terms) else 0
+    if len(values) < matrix.shape[1] + spare:
+        return []
+    solution, _, rank, _ = np.linalg.lstsq(matrix, values, rcond=None)
+    if rank < matrix.shape[1]:
+        return []
+    places = np.cumsum([1, *(term.columns.shape[1] for term in terms)])
+    return [term.row(solution[a:b]) for term, a, b in zip(terms, places[:-1], places[1:], strict=True)]
 
 
 def words(sweep: Sweep, wanted: tuple[str, ...] = ()) -> list[str]:
@@ -104,6 +123,9 @@ def words(sweep: Sweep, wanted: tuple[str, ...] = ()) -> list[str]:
             moved = "; ".join(_moved(row, unit) for row in effects.to_dict("records"))
             some = ", where it is reached" if table[answer].isna().any() else ""
             sentences.append(f"Main effects on the {name_of(answer)}, averaged over the others{some}: {moved}.")
+        elif numbers := [varied.label for varied in sweep.plan.varied if varied.heading in table]:
+            count = f"{len(table)} variants do not tell {len(numbers)} numbers apart"
+            sentences.append(f"No main effects on the {name_of(answer)}: {count}.")
     return sentences
 
 
