@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from tyrefem.geometry import Section
 
 Array = NDArray[np.float64]
-#: Number of stations along the meridian; both ends are left out.
+#: Number of stations from the crown to the bead; the end of the bead is left out.
 STATIONS = 41
 
 
@@ -35,9 +35,12 @@ def inside_mesh(section: Section, size: float, s: Array, depth: Array) -> Array:
 
 @functools.lru_cache(maxsize=32)
 def wall_of(section: Section, size: float) -> Wall:
-    """The wall of a section on a mesh of a size (m). The 32 latest are kept."""
-    lowest = 0.0 if section.half else -section.line.length
-    s = np.linspace(lowest, section.line.length, STATIONS)[1:-1]
+    """The wall of a section on a mesh of a size (m): a full section has the stations of a half on both its sides.
+
+    The 32 latest are kept.
+    """
+    side = np.linspace(0.0, section.line.length, STATIONS)[:-1]
+    s = side if section.half else np.concatenate([-side[:0:-1], side])
     thickness = section.rubber_thickness(s)
     inner, outer = (inside_mesh(section, size, s, depth) for depth in (np.zeros_like(s), thickness))
     return Wall(s, thickness, inner, outer)
