@@ -5,14 +5,23 @@ from __future__ import annotations
 #: Words for answers whose name alone is not clear.
 WORDS = {
     "hottest_degC": "highest temperature",
+    "hottest_s_m": "place of the highest temperature along the meridian",
+    "hottest_depth_m": "depth of the highest temperature",
+    "hottest_time_s": "time of the highest temperature",
     "rolling_resistance_coefficient": "rolling resistance coefficient",
+    "rolling_resistance_coefficient_cold": "cold rolling resistance coefficient",
     "rolling_resistance_N": "rolling resistance",
     "contained-air_degC": "contained air at the end",
-    "gradient_K_m": "steepest gradient through the carcass",
+    "gas_pressure_Pa": "pressure of the contained air at the end",
+    "rim_degC": "rim at the end",
+    "gradient_K_m": "steepest gradient through the wall",
+    "gradient_s_m": "place of the steepest gradient along the meridian",
     "mass_kg": "mass",
     "life_km": "shortest fatigue life",
     "life_log10_km": "log10 of the shortest fatigue life in km",
+    "life_s_m": "place along the meridian that fails first",
     "life_place_degC": "temperature of the place that fails first",
+    "life_peak_J_m3": "peak cracking energy of the place that fails first",
     "time_to_limit_s": "time to the given temperature",
 }
 _UNITS = {
@@ -37,10 +46,13 @@ def shown(name: str, value: float, digits: int = 4) -> str:
 def name_of(answer: str) -> str:
     """An answer in words.
 
-    >>> name_of("hottest_degC"), name_of("crown-inner_max_degC")
-    ('highest temperature', 'crown-inner max')
+    >>> name_of("hottest_degC"), name_of("crown-inner_max_degC"), name_of("load_N")
+    ('highest temperature', 'crown-inner max', 'load')
     """
-    return WORDS.get(answer, answer.removesuffix("_degC").replace("_", " "))
+    end = next((end for end in _UNITS if answer.endswith(end)), "")
+    # "_time_s" and "_limit_s" are words with the unit s.
+    without = answer.removesuffix("_s" if end in ("_time_s", "_limit_s") else end)
+    return WORDS.get(answer, without.replace("_", " "))
 
 
 def unit_of(name: str) -> str:
