@@ -18,6 +18,7 @@ from hypothesis import strategies as st
 from tyrefem import study
 from tyrefem.api import Study
 from tyrefem.errors import InputError
+from tyrefem.inputs.uncertain_numbers import stated_deviations
 from tyrefem.reduced.surrogate import SurrogateCertificate
 from tyrefem.reports import sweep_answer_figures as answer_pictures  # noqa: F401  registers its pictures
 from tyrefem.reports.sweep_figures import figures
@@ -29,7 +30,8 @@ from tyrefem.sweep.pareto import ParetoFront, front, undominated
 from tyrefem.sweep.responses import Responses, main_effects
 from tyrefem.sweep.sobol_indices import Indices, indices
 from tyrefem.sweep.sweep import Sweep, sweep
-from tyrefem.sweep.tornado import Tornado, tornado_plan
+from tyrefem.sweep.tornado import Tornado, tolerances, tornado_plan
+from tyrefem.variants.answer_units import name_of
 from tyrefem.variants.answers import TIME_TO, answer_names
 from tyrefem.variants.blocks import packed
 from tyrefem.variants.card import EnvelopeCard, LimitCard, OptimiseCard
@@ -505,6 +507,14 @@ def test_names_of_answers_are_known_before_anything_runs(swept: Sweep, tyre: Stu
     assert TIME_TO not in answer_names(tyre)
 
 
+def test_no_answer_in_words_repeats_its_unit(tyre: Study) -> None:
+    lumped = tyre.replace({"boundaries.rim": {"law": "lumped", "mass": "9 kg"}})
+    for name in answer_names(lumped, 35.0):
+        words, unit = name_of(name), name.rpartition("_")[2]
+        assert "_" not in words
+        assert unit in ("share", "coefficient", "cold") or unit not in words.split(), words
+
+
 @given(st.lists(st.tuples(*3 * [st.integers(0, 4)]), min_size=1, max_size=30))
 def test_the_front_is_what_comparing_all_pairs_gives(rows: list[tuple[int, ...]]) -> None:
     values = np.array(rows, dtype=float)
@@ -591,3 +601,24 @@ def test_a_sensor_whose_answer_has_the_name_of_another_is_refused(name: str, tmp
         checked_pairs(named, EnvelopeCard(answer="hottest_degC", below=100.0))
     with pytest.raises(InputError, match=message):
         named.campaign()
+
+
+@pytest.mark.parametrize(
+    "phase", [{"speed": "5 mph"}, {"load": "1 kN"}, {"deflection": "20 mm"}, {"pressure": "60 psi"}]
+)
+def test_an_envelope_over_phases_of_their_own_is_refused(tyre: Study, phase: dict[str, str]) -> None:
+    phased = tyre.replace({"drive.phases": [{"name": "taxi"}, {"name": "tow", **phase}]})
+    with pytest.raises(InputError, match=f"the phase 'tow' has a {next(iter(phase))} of its own"):
+        checked_pairs(phased, EnvelopeCard(below=100.0, loads=("2 kN",)))
+    # Phases that take all of them from [drive] follow the envelope.
+    assert checked_pairs(tyre.replace({"drive.phases": [{"name": "taxi"}, {"name": "tow"}]}), EnvelopeCard(below=100.0))
+
+
+def test_a_tornado_without_tolerances_names_the_flag_that_gives_them(tyre: Study) -> None:
+    certain = {
+        f"materials.{region}.{name}.relative_sd": 0.0
+        for region, card in tyre.materials.items()
+        for name, _ in stated_deviations(card)
+    }
+    with pytest.raises(InputError, match="give --tolerance-of KEY=5%"):
+        tolerances(tyre.replace(certain))

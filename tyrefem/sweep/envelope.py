@@ -41,6 +41,7 @@ def checked_pairs(study: StudyData, card: EnvelopeCard) -> list[tuple[str, str]]
     InputError : as in `envelope`.
     """
     check_sensor_names(study)
+    _check_phases(study)
     try:
         check_answer(card.answer, study)
     except InputError as error:
@@ -54,6 +55,19 @@ def checked_pairs(study: StudyData, card: EnvelopeCard) -> list[tuple[str, str]]
     pairs = [(load, pressure) for load in loads for pressure in pressures]
     check_changes(study, [("", operating_point(pair, card.fastest)) for pair in pairs])
     return pairs
+
+
+def _check_phases(study: StudyData) -> None:
+    """Raise `InputError` for a phase with a speed, load or pressure of its own, which an envelope would not change."""
+    for number, phase in enumerate(study.data["drive"].get("phases", ())):
+        for name in ("speed", "load", "deflection", "pressure"):
+            if name in phase:
+                label = phase.get("name", number)
+                raise InputError(
+                    f"an envelope has one speed, load and pressure, but the phase '{label}' has a {name} of its own:"
+                    " take a study of one phase",
+                    field=f"envelope: drive.phases.{label}.{name}",
+                )
 
 
 def speed_range(card: EnvelopeCard) -> tuple[float, float]:
@@ -247,7 +261,8 @@ def envelope(
 
     Raises
     ------
-    InputError : the speeds are no range, the answer is unknown, or the study refuses a load or pressure.
+    InputError : the speeds are no range, the answer is unknown, a phase of the drive has its own speed, load or
+        pressure, or the study refuses a load or pressure.
     """
     import pandas as pd
 

@@ -43,7 +43,7 @@ def tolerances(
         uncertain = [_number(study, key, part, links or {}) for key, part in only.items()]
     if not uncertain:
         raise InputError(
-            "no tolerances: neither cards (relative_sd) nor [uncertainty] state any; give --tolerance KEY=5%",
+            "no tolerances: neither cards (relative_sd) nor [uncertainty] state any; give --tolerance-of KEY=5%",
             file=study.file,
         )
     return tuple(uncertain)
