@@ -508,7 +508,7 @@ def test_names_of_answers_are_known_before_anything_runs(swept: Sweep, tyre: Stu
 
 
 def test_no_answer_in_words_repeats_its_unit(tyre: Study) -> None:
-    lumped = tyre.replace({"boundaries.rim": {"law": "lumped", "mass": "9 kg"}})
+    lumped = tyre.replace({"boundaries.rim": {"law": "lumped", "mass": "9 kg", "cooling": "2 W/K", "air": "0.5 W/K"}})
     for name in answer_names(lumped, 35.0):
         words, unit = name_of(name), name.rpartition("_")[2]
         assert "_" not in words
