@@ -237,6 +237,20 @@ def test_another_quantity_is_refused(key: str, deviation: str, words: str) -> No
     assert error.value.field == f"uncertainty.{key}"
 
 
+def test_a_deviation_is_set_by_its_dotted_name() -> None:
+    study = tf.study(BIAS, {"uncertainty": {"drive.load": "3 %", "drive.ambient": "1 K"}})
+    other = study.replace({"uncertainty.drive.load": "5 %", "uncertainty.drive.pressure": "2 psi"})
+    assert dict(other.card.uncertainty) == {"drive.load": 0.05, "drive.ambient": "1 K", "drive.pressure": "2 psi"}
+    with pytest.raises(InputError, match="did you mean 'load'"):
+        tf.study(BIAS, {"uncertainty.drive.lod": "5 %"})
+
+
+def test_dotted_names_without_quotes_are_refused_in_plain_words() -> None:
+    with pytest.raises(InputError, match=r'write dotted names in quotes, e\.g\. "drive\.load" = "2 %"') as error:
+        tf.study(BIAS, {"uncertainty": {"drive": {"load": "3 %"}}})
+    assert error.value.field == "uncertainty.drive"
+
+
 def test_a_comparison_has_the_ambient_s_deviation() -> None:
     study = tf.study(BIAS, {"mesh.size": "8 mm", "drive.duration": "60 s", "uncertainty": {"drive.ambient": "2 K"}})
     result = study.run()

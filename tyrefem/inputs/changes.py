@@ -109,6 +109,9 @@ def _parts(data: Mapping[str, Any], key: str) -> list[str]:
     parts = [part.strip().replace("-", "_") if i == 0 else part.strip() for i, part in enumerate(key.split("."))]
     if not all(parts):
         raise InputError(f"'{key}' is not a dotted name such as drive.speed")
+    if parts[0] == "uncertainty" and len(parts) > 1:
+        # Its keys are dotted names.
+        return ["uncertainty", ".".join(parts[1:])]
     if parts[:2] == ["section", "layers"] and parts[3:] == ["angle"]:
         return ["materials", _cord_region(data, parts[2], key), "cords", "angle"]
     if parts[0] == "section" and len(parts) >= 2 and parts[1] != "base":

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from itertools import pairwise
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
-from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
+from pydantic import BeforeValidator, Field, WithJsonSchema, field_validator, model_validator
 
 from tyrefem.boundaries import LawOf
 from tyrefem.boundaries.contained_air import ContainedAirLaw
@@ -322,6 +323,16 @@ class StudyCard(Card):
         }
         names["published"] = any(published_range is not None for _, published_range in self.published)
         return tuple(name for name, there in names.items() if there)
+
+    @field_validator("uncertainty", mode="before")
+    @classmethod
+    def _quoted(cls, data: Any) -> Any:
+        """Refuse nested tables: TOML makes them of dotted names without quotes."""
+        for key, value in data.items() if isinstance(data, Mapping) else ():
+            if isinstance(value, Mapping):
+                inner = next(iter(value), "...")
+                raise InputError(f'write dotted names in quotes, e.g. "{key}.{inner}" = "2 %"', field=str(key))
+        return data
 
     @model_validator(mode="after")
     def _sensor_names(self) -> StudyCard:
