@@ -122,15 +122,19 @@ def trained(
 
 
 def weight(base: RollingTyre, hot: Mapping[str, NDArray[np.intp]]) -> Array:
-    """Weights (n,) of the nodes in the inner product.
+    """Weights (n,) of the nodes in the inner product, all positive.
 
     Half of the weight is by volume, the same for every region; half is on the nodes where regions are hottest. Small
-    regions such as beads count too, as their peaks are answers.
+    regions such as beads count too, as their peaks are answers. Corners of six-node triangles have no positive volume
+    (the integral of their shape function is nearly zero): there the diagonal of the mass matrix takes its place.
     """
     ops = base.problem.operators
     weights, ones = np.zeros(ops.size), np.ones(ops.size)
     for region in base.bodies:
-        of_region = ops.matrix(ops.mass(region)) @ ones
+        mass = ops.matrix(ops.mass(region))
+        of_region = mass @ ones
+        if of_region[ops.dofs(region)].min() <= 0:
+            of_region = mass.diagonal()
         weights += of_region / of_region.sum()
         weights[hot[region]] += 1 / len(hot[region])
     return weights / weights.sum()
