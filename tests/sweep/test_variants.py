@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -13,9 +14,11 @@ from tyrefem import study
 from tyrefem.api import Study
 from tyrefem.cards import read_toml
 from tyrefem.errors import InputError
+from tyrefem.geometry.meshing import build, write
 from tyrefem.library import find
 from tyrefem.quantity import parse
 from tyrefem.sweep.design import loaded
+from tyrefem.sweep.sweep import sweep
 from tyrefem.variants import task
 from tyrefem.variants.card import SweepCard
 from tyrefem.variants.plan import plan_of, planned
@@ -180,3 +183,12 @@ def test_another_sample_over_a_file_leaves_out_what_only_the_files_sample_has() 
             count=8,
             vary={"section.thickness_scale.shoulder-cushion": {"factor": [0.9, 1.1], "levels": 3}},
         )
+
+
+def test_a_failed_variant_names_the_mesh_file_of_its_owner(tmp_path: Path) -> None:
+    shutil.copy(find("study", "nasa-22x5.5-8pr"), tmp_path / "study.toml")
+    write(build(study("nasa-22x5.5-8pr").section, size=12e-3), tmp_path / "mine.msh")
+    meshed = study(str(tmp_path / "study.toml"), {"mesh": {"file": "mine.msh"}, "drive.duration": "20 s"})
+    failed = sweep(plan_of(meshed, {"section.thickness_scale.tread": [1.0, 0.8]}), reduced="never").failed
+    assert list(failed) == ["2"]
+    assert failed["2"].startswith(f"{tmp_path / 'mine.msh'}: ")

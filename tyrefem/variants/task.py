@@ -40,6 +40,7 @@ class Bundle:
     name : of the study. data : the study; its references point into ``files``. files : name -> bytes.
     version : of the package that packed the study. plugins : the user's own effects and laws.
     cards : digest of the cards as packed, those that are shipped among them: in a clone they may be edited.
+    paths : name of a file -> where its owner has it, for errors.
     """
 
     name: str
@@ -48,6 +49,7 @@ class Bundle:
     version: str = tyrefem.__version__
     plugins: Sent = field(default_factory=Sent)
     cards: str = ""
+    paths: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def digest(self) -> str:
@@ -70,6 +72,11 @@ class Bundle:
         missing = receive(self.plugins)
         if missing:
             raise VersionError(f"{missing} on this worker")
+
+    def named(self, error: InputError) -> InputError:
+        """The error with the owner's path of a packed file, not the worker's."""
+        path = self.paths.get(Path(error.file).name) if error.file else None
+        return error if path is None else InputError(error.message, field=error.field, file=path)
 
     def unpacked(self, folder: Path) -> StudyData:
         """The study, with its files written to a folder.
@@ -100,39 +107,40 @@ def bundle(study: StudyData) -> Bundle:
     for key in ("measured", "cases"):
         data.pop(key, None)
     files: dict[str, bytes] = {}
+    paths: dict[str, str] = {}
     near = study.folder
     loaded = [library.load("section", data["section"], near)[0]]
     materials = completed_materials(data["section"], data["materials"])
     loaded += [library.load("material", reference, near)[0] for reference in materials.values()]
     cards = hashlib.sha256(json.dumps(loaded, sort_keys=True, default=str).encode()).hexdigest()
-    data["section"] = _packed("section", data["section"], near, files)
+    data["section"] = _packed("section", data["section"], near, files, paths)
     data["materials"] = {
-        region: _packed("material", reference, near, files) for region, reference in data["materials"].items()
+        region: _packed("material", reference, near, files, paths) for region, reference in data["materials"].items()
     }
     mesh = data.get("mesh", {})
     if isinstance(mesh.get("file"), str):
-        mesh["file"] = _kept((near or Path()) / mesh["file"], files)
-    return Bundle(study.name, data, files, plugins=sent(), cards=cards)
+        mesh["file"] = _kept((near or Path()) / mesh["file"], files, paths)
+    return Bundle(study.name, data, files, plugins=sent(), cards=cards, paths=paths)
 
 
-def _packed(kind: str, reference: Any, near: Path | None, files: dict[str, bytes]) -> Any:
+def _packed(kind: str, reference: Any, near: Path | None, files: dict[str, bytes], paths: dict[str, str]) -> Any:
     """The reference for a machine that has only the package and ``files``."""
     if library.of_size(kind, reference, near) or (isinstance(reference, Mapping) and "base" not in reference):
         return reference
     name = reference["base"] if isinstance(reference, Mapping) else reference
     path = library.find(kind, name, near).resolve()
     if not path.is_relative_to(library.shipped().resolve()):
-        name = _kept(path, files)
+        name = _kept(path, files, paths)
     return {**reference, "base": name} if isinstance(reference, Mapping) else name
 
 
-def _kept(path: Path, files: dict[str, bytes]) -> str:
+def _kept(path: Path, files: dict[str, bytes], paths: dict[str, str]) -> str:
     try:
         content = path.read_bytes()
     except OSError as error:
         raise InputError(f"cannot be read: {error.strerror or error}", file=path) from None
     name = f"{path.stem}-{hashlib.sha256(content).hexdigest()[:8]}{path.suffix}"
-    files[name] = content
+    files[name], paths[name] = content, str(path)
     return name
 
 
@@ -244,7 +252,9 @@ def perform(task: Task) -> Outcome:
         outcome = Answered(answers(result, task.time_to))
         recent_tyres.remember(result.tyre)
         return outcome
-    except (InputError, SolverError) as error:
+    except InputError as error:
+        return Failed(str(task.packed.named(error)))
+    except SolverError as error:
         return Failed(str(error))
     except VersionError:
         raise
