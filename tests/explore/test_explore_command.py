@@ -21,6 +21,8 @@ def test_the_command_writes_a_page(small: Study, tmp_path: Path, capsys: pytest.
     assert answer["numbers"] == ["drive.speed"]
     assert answer["worst"] <= answer["tolerance"] == 1.0
     assert answer["cases"] == 6
+    assert main(["explore", str(small.file), *RANGES, "--out", str(page)]) == 0
+    assert capsys.readouterr().out.startswith("1 number, ")
     text = page.read_text(encoding="utf-8")
     assert '"limits":[{"answer":"hottest_degC","below":60.0' in text
     assert [file.name for file in page.parent.iterdir()] == ["tyre.html"]

@@ -614,6 +614,19 @@ def test_an_envelope_over_phases_of_their_own_is_refused(tyre: Study, phase: dic
     assert checked_pairs(tyre.replace({"drive.phases": [{"name": "taxi"}, {"name": "tow"}]}), EnvelopeCard(below=100.0))
 
 
+def test_the_tolerance_of_a_temperature_is_in_kelvins(tyre: Study) -> None:
+    stated = tyre.replace({"uncertainty": {"drive.ambient": "8 K", "drive.load": "1 %"}})
+    answer = Tornado(sweep(tornado_plan(stated)), ("hottest_degC",))
+    assert answer.tolerance("drive.ambient") == "±8 K"
+    assert answer.tolerance("drive.load") == "±1 %"
+    assert "depends most on drive.ambient: ±" in answer.words[0]
+    assert "K for ±8 K, then" in answer.words[0]
+    # Eight kelvins more or less are those of two runs.
+    row = answer.of("hottest_degC").set_index("number").loc["drive.ambient"]
+    ends = [tyre.replace({"drive.ambient": f"{t} degC"}).run().history.maximum.temperature for t in (17, 25, 33)]
+    assert (row["less"], row["more"]) == pytest.approx((ends[0] - ends[1], ends[2] - ends[1]), abs=1e-3)
+
+
 def test_a_tornado_without_tolerances_names_the_flag_that_gives_them(tyre: Study) -> None:
     certain = {
         f"materials.{region}.{name}.relative_sd": 0.0

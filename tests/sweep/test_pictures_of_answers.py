@@ -24,7 +24,8 @@ def test_a_tornado_names_its_numbers_whole_and_on_the_paper() -> None:
     rows = pd.DataFrame(
         {"number": [LONG], "tolerance": [0.2], "less": [-1.0], "more": [1.0], "range": [2.0], "nominal": [80.0]}
     )
-    drawn = tornado(SimpleNamespace(of=lambda answer: rows), "hottest_degC")  # type: ignore[arg-type]
+    data = SimpleNamespace(of=lambda answer: rows, tolerance=lambda number: "±20 %")
+    drawn = tornado(data, "hottest_degC")  # type: ignore[arg-type]
     table = pd.DataFrame({"number": [LONG], "first": [0.5], "total": [0.6], "first_95": [0.1], "total_95": [0.1]})
     for made in (drawn, indices(table, "hottest_degC")):
         (label,) = made.axes[0].get_yticklabels()

@@ -8,6 +8,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from tyrefem.brief import counted
 from tyrefem.output import atomic_path
 from tyrefem.reports.explore_data import page_data
 
@@ -76,7 +77,8 @@ def described(model: BoxModel) -> list[str]:
     }
     errors = ", ".join(f"{name} {error:.2g}" for name, error in worst.items())
     return [
-        f"{len(numbers)} numbers, {model.reduced.size} modes; trained on {certificate.trained_on} runs and corrections",
+        f"{counted(len(numbers), 'number')}, {model.reduced.size} modes; "
+        f"trained on {certificate.trained_on} runs and corrections",
         f"certified on {certificate.cases} fresh full runs, inside the box and at its corners: largest error "
         f"{certificate.worst:.2g} K anywhere at any time (allowed {certificate.tolerance:g} K)",
         f"  by output, K: {errors}",

@@ -70,7 +70,7 @@ def tornado(tornado_data: Tornado, answer: str) -> Figure:
     # Numbers of little influence would leave less room for the others.
     table = rows[rows["range"] > 0.01 * rows["range"].max()].head(MOST).iloc[::-1]
     high = BAR * max(len(table), 2) + 0.1
-    numbers = [f"{plain(row['number'])}  ±{100 * row['tolerance']:.3g} %" for row in table.to_dict("records")]
+    numbers = [f"{plain(number)}  {tornado_data.tolerance(number)}" for number in table["number"]]
     room = _room(numbers)
     drawn = figure(room + 4.2, 1.0 + high + TITLE)
     axes = add_axes(drawn, room, 0.95, 4.0, high)
