@@ -99,7 +99,7 @@ def test_all_questions_of_a_sweep_and_all_of_a_run_are_documented(
     asked = ["--indices", "4", "--tornado", "--envelope", "hottest_degC<90"]
     assert main(["sweep", "study.toml", *vary, *asked, "--out", "asked", "--json"]) == 0
     checked("sweep", capfd.readouterr().out)
-    vary = ["--vary", "drive.speed=10 mph:20 mph:2", "--vary", "drive.load=2500 lbf:3000 lbf:2"]
+    vary = ["--vary", "drive.speed=10 mph:20 mph", "--vary", "drive.load=2500 lbf:3000 lbf"]
     asked = ["--minimise", "hottest_degC", "--limit", "rolling_resistance_N<500"]
     assert main(["sweep", "study.toml", *vary, *asked, "--out", "best", "--json"]) == 0
     checked("sweep", capfd.readouterr().out)

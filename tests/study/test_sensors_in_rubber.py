@@ -26,7 +26,7 @@ def study():
         ({"s": "-1 in", "depth": "1 mm"}, "is off the section"),
         ({"at": ["0.2 m", "0 m"]}, "the sensor is outside the rubber"),
         ({"at": ["0.27 m", "-5 mm"]}, "the sensor is outside the rubber"),
-        ({"s": "1 in"}, "give either 's' and 'depth', 's' and 'below_surface', or 'at"),
+        ({"s": "1 in"}, "give either 's' and 'depth', 's' and 'below_surface', 'at"),
         ({"s": "1 in", "depth": "1 mm", "below_surface": "1 mm"}, "give either 's' and 'depth'"),
         ({"at": ["0.27 m", "0 m"], "below_surface": "1 mm"}, "give either 's' and 'depth'"),
         (

@@ -109,8 +109,18 @@ def motion_in(phase: MovingPhase, fraction: float, rolling_radius: float = math.
     angle = 0.0 if phase.slip_angle is None else phase.slip_angle.at(fraction)
     if phase.slip_speed is not None:
         return Motion(speed, phase.slip_speed.at(fraction), angle, rolling_radius)
-    ratio = 0.0 if phase.slip_ratio is None else phase.slip_ratio.at(fraction)
-    return Motion(speed, ratio * Motion(speed, slip_angle=angle).forward_speed, angle, rolling_radius)
+    forward = Motion(speed, slip_angle=angle).forward_speed
+    return Motion(speed, slip_ratio_in(phase, fraction) * forward, angle, rolling_radius)
+
+
+def slip_ratio_in(phase: MovingPhase, fraction: float) -> float:
+    """The slip ratio at a fraction of a phase.
+
+    A stated ratio also holds as the wheel comes to rest, and is the same at every speed to the last bit.
+    """
+    if phase.slip_speed is not None:
+        return motion_in(phase, fraction).slip_ratio
+    return 0.0 if phase.slip_ratio is None else phase.slip_ratio.at(fraction)
 
 
 def motion_at(drive: Phases, time: float, rolling_radius: float = math.nan) -> Motion:

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from tyrefem.inputs.motion import motion_in
+from tyrefem.inputs.motion import motion_in, slip_ratio_in
 
 if TYPE_CHECKING:
     from tyrefem.inputs.drive import Phase
@@ -43,8 +43,7 @@ def wheel_state(phase: Phase, fraction: float) -> WheelState:
     """
     motion = motion_in(phase, fraction)
     given = phase.slip_ratio is not None or phase.slip_speed is not None
-    # A slip ratio holds as the wheel comes to rest, and is the same at every speed to the last bit.
-    ratio = motion.slip_ratio if phase.slip_ratio is None else phase.slip_ratio.at(fraction)
+    ratio = slip_ratio_in(phase, fraction)
     return WheelState(
         motion.slip_angle,
         0.0 if phase.camber is None else phase.camber.at(fraction),
