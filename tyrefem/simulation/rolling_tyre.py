@@ -126,7 +126,12 @@ class RollingTyre(Surroundings):
         if self.topology is not None:
             return self.topology.mesh_of(self.study.section, named)
         if self.study.card.mesh.file is not None:
-            return self.study.mesh().with_zones(named)
+            try:
+                return self.study.mesh().with_zones(named)
+            except InputError as error:
+                law = self.study.card.mechanics.strain
+                message = f"{error.message}: strain law '{law}' has other strains on either side"
+                raise InputError(message, field="mesh.file", file=self.study.file) from None
         key = self.study.section, repr(self.study.card.mesh), tuple(named.items())
         return _MESHES.get(key, lambda: self.study.mesh().with_zones(named))
 

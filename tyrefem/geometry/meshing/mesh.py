@@ -118,7 +118,9 @@ class TyreMesh(Brief, PickledFields):
         inside = (s > start - 1e-6) & (s < end + 1e-6)
         outside = (s < start + 1e-6) | (s > end - 1e-6)
         if not np.where(middle, inside, outside).all():
-            raise InputError(f"the mesh has no line at s = {start:g} m or {end:g} m; elements would be cut")
+            cut = [at for at in (start, end) if ((s.min(axis=0) < at - 1e-6) & (s.max(axis=0) > at + 1e-6)).any()]
+            named = " and ".join(f"{at * 1e3:.6g} mm" for at in cut or (start, end))
+            raise InputError(f"the mesh has no line at s = {named}; elements would be cut")
         chosen = np.flatnonzero(middle)
         return chosen if region is None else np.intersect1d(chosen, self.mesh.subdomains[region])
 
