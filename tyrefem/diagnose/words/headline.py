@@ -193,7 +193,9 @@ def _rest(d: DiagnosisData) -> str:
     if d.robustness is not None and d.robustness.models[0].name == ENERGY:
         return "compare strain laws and tan delta where the heat differs (tyrefem strain STUDY)"
     files = list(draft_effects(d))
-    return f"judge the draft {EFFECTS}/{files[0]} (tyrefem diagnose STUDY --effects {EFFECTS})" if files else ""
+    if not files:
+        return ""
+    return f"judge the draft {files[0]}: tyrefem diagnose STUDY --effects FOLDER/{EFFECTS}, FOLDER that of the results"
 
 
 def _unexplained(d: DiagnosisData) -> tuple[str, str, str]:

@@ -180,7 +180,8 @@ def _next_step(d: DiagnosisData) -> tuple[str, ...]:
 def draft_words(d: DiagnosisData) -> tuple[str, ...]:
     """Where the draft effect is, and how it is judged; empty without a law that holds."""
     return tuple(
-        f"A draft with this law is in {EFFECTS}/{name}: check it, then diagnose again with --effects {EFFECTS}."
+        f"A draft with this law is in {EFFECTS}/{name} in the folder of the results: check it, then diagnose again "
+        f"with --effects FOLDER/{EFFECTS}."
         for name in draft_effects(d)
     )
 
