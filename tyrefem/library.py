@@ -11,13 +11,14 @@ from pathlib import Path
 from typing import Any
 
 from tyrefem.cards import merged, read_toml
+from tyrefem.cards.file_kinds import FILES as KIND_FILES
 from tyrefem.cards.file_kinds import is_another, other_file
 from tyrefem.errors import InputError, nearest
 from tyrefem.sizes import is_size, looks_like_size, section_of_size
 
 FOLDERS = {"section": "geometry", "material": "materials", "study": "studies", "sweep": "studies"}
 #: Kinds of card that are a folder with this file in it; the folder's name is the card's name.
-FILES = {"study": "study.toml", "sweep": "sweep.toml"}
+FILES = {kind: name for kind, name in KIND_FILES.items() if kind in FOLDERS}
 #: Environment variable with the user's library folders, separated as in PATH.
 SEARCH_PATH = "TYREFEM_PATH"
 

@@ -43,8 +43,8 @@ KINDS = {
         "a material card", "tyrefem show material", (frozenset({"loss_tangent"}), frozenset({"conductivity"}))
     ),
 }
-#: File in a folder -> kind.
-FILES = {"study.toml": "study", "rig.toml": "rig", "thermal.toml": "thermal", "sweep.toml": "sweep"}
+#: Kinds that may be a folder with this file in it.
+FILES = {"study": "study.toml", "rig": "rig.toml", "thermal": "thermal.toml", "sweep": "sweep.toml"}
 
 
 def kind_of(data: Mapping[str, Any]) -> str | None:
@@ -74,7 +74,7 @@ def other_file(kind: str, folders: Collection[Path]) -> tuple[str, Path] | None:
         (
             (other, folder / name)
             for folder in folders
-            for name, other in FILES.items()
+            for other, name in FILES.items()
             if other != kind and os.path.isfile(folder / name)
         ),
         None,

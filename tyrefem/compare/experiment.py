@@ -183,6 +183,7 @@ class _ExperimentReader:
         self.entries, self.given = entries, given
         self.columns: list[str] = []
         self._at_hand: dict[str, MeasuredTable] = {}
+        self._lines: dict[Path, TableLines] = {}
         #: Name that a table without names of runs gives to its run -> such tables, in the order of reading.
         self.nameless: dict[str, list[object]] = {}
 
@@ -210,7 +211,7 @@ class _ExperimentReader:
             planned = [
                 self._experiment(self._later(run, measured), entry) for run in measured.runs if run.name in wanted
             ]
-            result += planned if entry.run is not None else self._apart(planned, table_lines(entry.table))
+            result += planned if entry.run is not None else self._apart(planned, self._lines_of(entry.table))
         return result
 
     def of_tables(self, table: Table) -> list[Experiment]:
@@ -231,15 +232,22 @@ class _ExperimentReader:
         of_file = [entry for entry in self.entries if _path(entry.table) == _path(table)]
         if of_file:
             return self.of_entries(of_file)
-        lines = table_lines(table)
+        lines = self._lines_of(table)
         return self._apart(self._of_other(lines), lines)
+
+    def _lines_of(self, table: str | Path) -> TableLines:
+        """The rows of a file, read once."""
+        path = _path(table)
+        if path not in self._lines:
+            self._lines[path] = table_lines(table)
+        return self._lines[path]
 
     def _of_entry(self, entry: MeasuredEntryLike) -> MeasuredTable:
         """The table of an entry, read once; it must have the columns that the entry names."""
         names = self._names(entry)
         key = repr((entry.table, entry.time_offset, names))
         if key not in self._at_hand:
-            self._at_hand[key] = _read(table_lines(entry.table), names, entry)
+            self._at_hand[key] = _read(self._lines_of(entry.table), names, entry)
         measured = self._at_hand[key]
         for wanted, purpose in ((entry.rename, "to rename"), (entry.ignore, "to ignore")):
             missing = measured.missing(wanted)

@@ -88,7 +88,7 @@ def tornado_plan(
 
 def _in_words(number: UncertainNumber) -> str:
     """A tolerance as text: a share, or of a temperature kelvins, as a share of it means nothing."""
-    amounts = [amount_parts(value) if isinstance(value, str) else None for value in number.written]
+    amounts = [amount_parts(value) for value in number.written]
     if amounts and amounts[0] is not None and amounts[0][1] == "K":
         return f"±{number.sd * float(amounts[0][0]):.3g} K"
     return f"±{100 * number.sd:.3g} %"

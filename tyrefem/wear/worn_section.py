@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -13,6 +12,7 @@ from numpy.typing import NDArray
 from tyrefem import library
 from tyrefem.errors import InputError
 from tyrefem.quantity import parse
+from tyrefem.sizes.drawn import millimetres
 from tyrefem.wear.ring_wear import RingWear
 
 if TYPE_CHECKING:
@@ -26,6 +26,8 @@ LEFT = 0.5e-3
 WINDOW = 5e-3
 #: Stations of the worn thickness along the tread: an even step of its length.
 STATIONS = 60
+#: Digits of the card's lengths in mm.
+DIGITS = 7
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,7 +93,7 @@ def worn_section(study: StudyData, wear: RingWear, kilometres: float) -> dict[st
         raise InputError(message, field="section", file=study.file)
     data = copy.deepcopy(data)
     layer = data["layers"][-1]
-    layer |= {"s": _millimetres(s), "thickness": _millimetres(thickness - depth)}
+    layer |= {"s": millimetres(s, DIGITS), "thickness": millimetres(thickness - depth, DIGITS)}
     layer["source"] = f"{layer.get('source', '')}; tread worn by {kilometres:,.0f} km (tyrefem wear)"
     _without_scales(data, section)
     if "outer_diameter" in data.get("parameters", {}):
@@ -113,10 +115,5 @@ def _without_scales(data: dict[str, Any], section: Section) -> None:
     if any(scaled & set(layer.regions.names) for layer in inner):
         for card, layer in zip(data["layers"], inner, strict=False):
             profile = layer.thickness
-            card |= {"s": _millimetres(profile.s), "thickness": _millimetres(profile.values)}
+            card |= {"s": millimetres(profile.s, DIGITS), "thickness": millimetres(profile.values, DIGITS)}
         scales.clear()
-
-
-def _millimetres(values: Iterable[float]) -> dict[str, Any]:
-    """A row of lengths, m, for a card."""
-    return {"unit": "mm", "values": [round(float(value) * 1e3, 7) for value in values]}
