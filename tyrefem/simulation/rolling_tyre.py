@@ -126,8 +126,9 @@ class RollingTyre(Surroundings):
         if self.topology is not None:
             return self.topology.mesh_of(self.study.section, named)
         if self.study.card.mesh.file is not None:
+            from_file = self.study.mesh()
             try:
-                return self.study.mesh().with_zones(named)
+                return from_file.with_zones(named)
             except InputError as error:
                 law = self.study.card.mechanics.strain
                 message = f"{error.message}: strain law '{law}' has other strains on either side"
