@@ -133,6 +133,20 @@ def test_what_no_model_can_follow_or_no_tyre_can_be_is_told_apart(drives: Drives
     assert predictions.certificates[(), DRIVE].good
 
 
+def test_only_sensitivities_that_the_model_does_not_follow_are_simulated(drives: Drives) -> None:
+    model, modes = drives.model, drives.modes
+    load = next(unknown for unknown in drives.unknowns if unknown.key == "drive.load")
+    sun, at = drives.candidate("sun").amplitudes[0], {load: 0.02}
+    predictions = Predictions(Evaluations(model), modes)
+    predictions.predict([((), at)], [DRIVE])
+    ((jacobian,),) = predictions.jacobians([((), (sun, load), at)], [DRIVE])
+    status, reduced = model.reduced_jacobian(DRIVE, modes[DRIVE], (sun, load), at)
+    assert status.tolist() == [FOLLOWED]
+    assert np.isfinite(reduced).all(axis=0).tolist() == [False, True]
+    np.testing.assert_array_equal(jacobian[:, 1], reduced[:, 1])
+    np.testing.assert_array_equal(jacobian[:, 0], model.jacobian(DRIVE, (sun,), at)[:, 0])
+
+
 def test_a_set_is_simulated_once_and_then_left_to_the_model(drives: Drives) -> None:
     road = (drives.candidate("hot-road"),)
     predictions = Predictions(Evaluations(drives.model), drives.modes)

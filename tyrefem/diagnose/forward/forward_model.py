@@ -40,6 +40,8 @@ Places = tuple[tuple[tuple[float, float], ...], ...]
 #: Status of a reduced model at a point: its readings hold; it cannot represent these effects; it has no answer at this
 #: point (an impossible tyre, for example).
 FOLLOWED, NOT_FOLLOWED, NO_ANSWER = 0, 1, 2
+#: Tangents to more unknowns than this take double steps.
+MANY = 16
 #: Number of simulations of each drive that are kept.
 LATEST = 8
 #: Simulations at x = 0, by study, drive and readings: all diagnoses of one layout share them.
@@ -217,11 +219,12 @@ class ForwardModel(Brief):
     def jacobian(self, number: int, unknowns: Sequence[Unknown], at: Values) -> Array:
         """(n_blocks, n_unknowns): d(block mean)/dx with unknowns at ``at``.
 
-        On the mesh of x = 0 tangents take steps twice as long, and are corrected by what these leave out at x = 0.
+        On the mesh of x = 0 tangents to many unknowns take steps twice as long, and are corrected by what these leave
+        out at x = 0, which is computed once.
         """
         base, here, samplings = self.base(number), self._simulated(number, at), self.drives[number].sensors
         sensors = tuple(each.sensor for each in samplings)
-        double = here.tyre.mesh is base.tyre.mesh
+        double = here.tyre.mesh is base.tyre.mesh and len(unknowns) > MANY
         slopes = self._varied(here, base.study, unknowns, at, double=double).slopes(sensors)
         if double:
             left_out = self._left_out(base, unknowns, sensors)
@@ -378,7 +381,8 @@ class ForwardModel(Brief):
     ) -> tuple[Array, Array]:
         """Status (1,), see `FOLLOWED`, and `jacobian` by difference quotients of the drive's reduced model.
 
-        Columns of a further effect with which no tyre can be built are NaN.
+        Columns of unknowns that the model does not follow are NaN, and those of a further effect with which no tyre can
+        be built.
         """
         base, drive = self.base(number), self._reduced_drive(number, modes)
         here = self.with_values(base.study, at, base.study)
@@ -396,7 +400,8 @@ class ForwardModel(Brief):
         if slopes is None:
             return np.array([NOT_FOLLOWED]), jacobian
         for column, slope in zip(there, slopes, strict=True):
-            jacobian[:, column] = self.blocks(number, base.grid, slope)
+            if slope is not None:
+                jacobian[:, column] = self.blocks(number, base.grid, slope)
         return np.array([FOLLOWED]), jacobian
 
     @functools.cached_property

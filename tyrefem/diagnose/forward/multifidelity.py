@@ -116,8 +116,16 @@ class Predictions(Brief):
         tables = {
             pair: jacobian for pair, (status, jacobian) in zip(modal, answers, strict=True) if status[0] == FOLLOWED
         }
-        left = [pair for pair in wanted if pair not in tables]
-        tables |= zip(left, self.evaluations.of("jacobian", [(i, *queries[k][1:]) for k, i in left], tick), strict=True)
+        left = {(k, i): np.arange(len(queries[k][1])) for k, i in wanted if (k, i) not in tables}
+        # A model that holds here may not follow some of the further effects: only these are simulated.
+        gaps = {pair: np.flatnonzero(~np.isfinite(jacobian).all(axis=0)) for pair, jacobian in tables.items()}
+        left |= {pair: columns for pair, columns in gaps.items() if len(columns)}
+        questions = [
+            (i, tuple(queries[k][1][column] for column in columns), queries[k][2]) for (k, i), columns in left.items()
+        ]
+        for (k, i), jacobian in zip(left, self.evaluations.of("jacobian", questions, tick), strict=True):
+            table = tables.setdefault((k, i), np.empty((len(jacobian), len(queries[k][1]))))
+            table[:, left[k, i]] = jacobian
         return [[tables[k, i] for i in numbers] for k in range(len(queries))]
 
     def give_up(self) -> None:

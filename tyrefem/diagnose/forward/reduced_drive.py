@@ -111,10 +111,11 @@ class ReducedDrive:
 
     def slopes(
         self, here: StudyData, there: Sequence[tuple[StudyData, bool]], steps: Sequence[float]
-    ) -> list[Readings] | None:
-        """d(reading)/dx from the studies ``there``, each one step from ``here``; None if one is not reducible.
+    ) -> list[Readings | None] | None:
+        """d(reading)/dx from the studies ``there``, each one step from ``here``; None if ``here`` is not reducible.
 
         All studies are integrated as one batch with the same time steps, so that differences of short steps are smooth.
+        A study that does not fit into this batch has None in the list.
 
         Parameters
         ----------
@@ -129,24 +130,26 @@ class ReducedDrive:
         numbers, solution = together
         states, balances = solution.states(self.base.grid), solution.batch.balances
         place = {number: where for where, number in enumerate(numbers)}
-        at = {number: place[order] for order, number in enumerate(moved, start=1)}
+        at = {number: place.get(order) for order, number in enumerate(moved, start=1)}
 
         def reading(study: StudyData, where: int) -> Readings:
             return self.read(study, balances[where], states[:, where])
 
         first = reading(here, place[0])
-        others = [reading(study, at.get(number, place[0])) for number, (study, _) in enumerate(there)]
-        return [
-            {name: (changed[name] - first[name]) / step for name in first}
-            for changed, step in zip(others, steps, strict=True)
-        ]
+        slopes: list[Readings | None] = []
+        for number, ((study, _), step) in enumerate(zip(there, steps, strict=True)):
+            where = at.get(number, place[0])
+            changed = None if where is None else reading(study, where)
+            slopes.append(changed and {name: (changed[name] - first[name]) / step for name in first})
+        return slopes
 
     def _together(self, tyres: Sequence[RollingTyre]) -> tuple[list[int], BatchSolution] | None:
-        """The solution of all tyres as one batch; None if one is not reducible, before anything is integrated."""
+        """Numbers and solution of the tyres in one batch with the first; None if the first is not reducible."""
         tolerance, most = self.settings.reduced_time_tolerance, self.settings.batch_size
         with contextlib.suppress(InputError):
             for numbers, part in batch_solutions(self.model, tyres, tolerance, most):
-                return (numbers, part) if isinstance(part, BatchSolution) and len(numbers) == len(tyres) else None
+                if 0 in numbers or isinstance(part, BatchSolution):
+                    return (numbers, part) if 0 in numbers and isinstance(part, BatchSolution) else None
         return None
 
     def _integrated(self, tyres: Sequence[RollingTyre]) -> tuple[list[tuple[list[int], BatchSolution]], list[int]]:
