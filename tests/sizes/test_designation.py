@@ -22,8 +22,10 @@ INCH = 0.0254
         ("LT245/75R16", "light-truck", 0.245, 0.75, 16),
         ("LT245/75R16 120/116R", "light-truck", 0.245, 0.75, 16),
         ("195/70R15C 104/102R", "light-truck", 0.195, 0.70, 15),
+        ("195 / 70 r 15 C", "light-truck", 0.195, 0.70, 15),
         ("295/80R22.5 152/148M", "truck", 0.295, 0.80, 22.5),
         ("11R22.5", "truck", 11 * INCH, None, 22.5),
+        ("11 R 22.5", "truck", 11 * INCH, None, 22.5),
     ],
 )
 def test_road_sizes(text: str, kind: str, width: float, series: float | None, rim: float) -> None:
@@ -42,6 +44,10 @@ def test_road_sizes(text: str, kind: str, width: float, series: float | None, ri
         ("22x5.5 8PR", "aircraft-bias", 22, 5.5, None, 8),
         ("22x5.5-8", "aircraft-bias", 22, 5.5, 8, None),
         ("H44.5x16.5-21 28 PR", "aircraft-bias", 44.5, 16.5, 21, 28),
+        ("h 44.5X16.5-21, 28 ply rating", "aircraft-bias", 44.5, 16.5, 21, 28),
+        ("33x12.5-15", "aircraft-bias", 33, 12.5, 15, None),
+        ("30x11.5R14.5", "aircraft-radial", 30, 11.5, 14.5, None),
+        ("31x10.50R15 30PR", "aircraft-radial", 31, 10.5, 15, 30),
         ("B24x9.5-10.5", "aircraft-bias", 24, 9.5, 10.5, None),
         ("46x17R20", "aircraft-radial", 46, 17, 20, None),
         ("1400x530R23", "aircraft-radial", 1400 / 25.4, 530 / 25.4, 23, None),
@@ -56,6 +62,34 @@ def test_aircraft_sizes(
     assert size.width == pytest.approx(width * INCH)
     assert size.rim_diameter == (None if rim is None else pytest.approx(rim * INCH))
     assert size.ply_rating == plies
+
+
+@pytest.mark.parametrize(
+    ("text", "outside", "width", "rim", "load_range"),
+    [
+        ("31x10.50R15LT", 31, 10.5, 15, None),
+        ("31X10.50R15 LT 109Q", 31, 10.5, 15, None),
+        ("31x10.50R15", 31, 10.5, 15, None),
+        ("LT31x10.50R15 6PR", 31, 10.5, 15, "C"),
+        ("37x12.50R17LT/D 124Q", 37, 12.5, 17, "D"),
+        ("33 x 12.5 ZR 20 LT F", 33, 12.5, 20, "F"),
+    ],
+)
+def test_flotation_sizes_are_of_light_trucks(
+    text: str, outside: float, width: float, rim: float, load_range: str | None
+) -> None:
+    size = parse_size(text)
+    assert looks_like_size(text)
+    assert (size.kind, size.load_range, size.prefix) == ("light-truck", load_range, "")
+    assert size.outside_diameter == pytest.approx(outside * INCH)
+    assert (size.width, size.rim_diameter) == (pytest.approx(width * INCH), pytest.approx(rim * INCH))
+
+
+@pytest.mark.parametrize(
+    ("text", "letter"), [("LT245/75R16/C", "C"), ("LT245/75R16 D", "D"), ("LT245/75R16 10PR", "E")]
+)
+def test_light_trucks_have_load_ranges(text: str, letter: str) -> None:
+    assert parse_size(text).load_range == letter
 
 
 @pytest.mark.parametrize(
@@ -76,13 +110,24 @@ def test_aircraft_sizes(
         ("12.00R20", "such as 11R22.5 or 295/80R22.5; 13R22.5 replaces this one"),
         ("10.00R20 16PR", "11R22.5 replaces this one"),
         ("7.50R16LT", "flat rims with 5 deg seats, which have no rules here"),
+        ("33X12.50-15LT", "bias-ply light-truck size, which has no rules here; radials are written 33x12.50R15LT"),
+        ("33x12.50-15", "radials are written 33x12.50R15LT; an aircraft tyre is written 33x12.5-15"),
+        ("31x10.50R16.5LT", "rims of 16.5 in, which have no rules here; nearest: 31x10.50R17LT"),
+        ("20x12.50R15LT", "no light-truck size: its outside diameter, width and rim diameter do not go together"),
+        ("31x10.50R15LT/F", "load range F; allowed: C (6PR), D (8PR), E (10PR)"),
+        ("205/60R15/E", "load ranges belong to light-truck sizes, which are written LT205/60R15/E"),
+        ("245/75R16LT", "did you mean 'LT245/75R16'"),
+        ("31x10,50R15LT", "did you mean '31x10.50R15LT'"),
+        ("185R14C", "did you mean '185/80R14C'"),
+        ("180/55ZR17", "no car size, whose widths end in 5, .* nearest: 185/55ZR17"),
+        ("120/70ZR17 M/C", "is a motorcycle size, which has no rules here"),
         ("205/60R15 30V", "load index 30 is outside 60 to 179"),
         ("", "is no tyre size"),
         (205, "is no tyre size"),
     ],
 )
 def test_what_is_no_size_says_what_is_allowed(text: object, message: str) -> None:
-    with pytest.raises(InputError, match="(?s)" + message.replace("(", r"\(")):
+    with pytest.raises(InputError, match="(?s)" + message.replace("(", r"\(").replace(")", r"\)")):
         parse_size(text)
 
 
@@ -95,7 +140,7 @@ def test_the_text_keeps_its_speed_symbol() -> None:
 def test_names_of_cards_are_no_sizes() -> None:
     names = ("nasa-22x5.5-8pr", "passenger-205-55r16", "mine", "geometry/205.toml", "H44", "205/60R15.toml")
     assert not any(map(looks_like_size, names))
-    assert looks_like_size("205/60X15")
+    assert all(map(looks_like_size, ("205/60X15", "ST205/75R15", "3.50-18", "31x10,50R15LT")))
 
 
 @pytest.mark.parametrize(

@@ -19,7 +19,8 @@ from tyrefem.sizes.text import section_text
 pytestmark = pytest.mark.fast
 INCH = 0.0254
 SIZES = (
-    "205/60R15", "255/40R17", "195/65R15", "LT245/75R16", "295/80R22.5", "11R22.5",
+    "205/60R15", "255/40R17", "195/65R15", "LT245/75R16", "31x10.50R15LT", "37x12.50R17LT/D",
+    "295/80R22.5", "11R22.5",
     "22x5.5 8PR", "22x5.5 12PR", "40x14", "46x17R20",
 )  # fmt: skip
 
@@ -42,6 +43,58 @@ def test_road_tyres_have_the_standards_size(size: str, diameter: float, width: f
     assert section.outer_diameter * 1e3 == pytest.approx(diameter, abs=1.0)
     assert section.overall_width * 1e3 == pytest.approx(width, abs=1.6)
     assert draw_size(size).rules["rim_width"].value == pytest.approx(rim * INCH)
+
+
+@pytest.mark.parametrize(
+    ("size", "diameter", "width", "rim"),
+    [
+        ("27x8.50R14LT", 674, 218, 7.0),
+        ("30x9.50R15LT", 750, 240, 7.5),
+        ("31x10.50R15LT", 775, 268, 8.5),
+        ("32x11.50R15LT", 801, 290, 9.0),
+        ("33x12.50R15LT", 826, 318, 10.0),
+        ("37x12.50R17LT", 928, 318, 10.0),
+        ("33x13.50R15LT", 826, 345, 11.0),
+    ],
+)
+def test_flotation_sizes_have_the_standards_size(size: str, diameter: float, width: float, rim: float) -> None:
+    """UN R54, Annex 5, high flotation (from memory), mm and in; a maker's catalogue has the same widths and rims."""
+    rules = draw_size(size).rules
+    assert rules["outer_diameter"].value * 1e3 == pytest.approx(diameter, abs=1.0)
+    assert rules["section_width"].value * 1e3 == pytest.approx(width, abs=0.6)
+    assert rules["rim_width"].value == pytest.approx(rim * INCH)
+    assert tf.section_from_size(size).outer_diameter == pytest.approx(rules["outer_diameter"].value)
+
+
+@pytest.mark.parametrize(
+    ("size", "psi", "pounds"),
+    [
+        ("27x8.50R14LT/C", 50, 1520),
+        ("31x10.50R15LT/C", 50, 2270),
+        ("33x12.50R15LT/C", 35, 2205),
+        ("33x10.50R17LT/D", 65, 2910),
+        ("35x12.50R20LT/E", 65, 3195),
+        ("33x11.50R18LT/E", 80, 3305),
+    ],
+)
+def test_flotation_loads_are_those_of_the_load_table(size: str, psi: float, pounds: float) -> None:
+    """Loads of tirepressure.com's table of flotation sizes, lb."""
+    rules = draw_size(size).rules
+    assert rules["rated_pressure"].value == pytest.approx(psi * 6894.757, rel=1e-6)
+    assert rules["rated_load"].value == pytest.approx(pounds * 4.448222, rel=0.03)
+
+
+@pytest.mark.parametrize(("service", "psi"), [("33x12.50R15LT 108Q", 35), ("37x12.50R17LT 124Q", 50),
+                                              ("35x12.50R17LT 121Q", 65), ("33x12.50R20LT 119Q", 80)])  # fmt: skip
+def test_a_load_index_decides_the_pressure_of_a_flotation_size(service: str, psi: float) -> None:
+    """Makers' load ranges of these sizes and load indices: C, D, E and F."""
+    assert draw_size(service).rules["rated_pressure"].value == pytest.approx(psi * 6894.757, rel=1e-6)
+
+
+def test_a_load_range_lowers_pressure_and_load() -> None:
+    """Loads of the Tire and Rim Association (from memory): 2205, 2623 and 3042 lb at 50, 65 and 80 psi."""
+    loads = [draw_size(f"LT245/75R16/{letter}").rules["rated_load"].value for letter in "CDE"]
+    assert loads[:2] == pytest.approx([2205 / 3042 * loads[2], 2623 / 3042 * loads[2]], rel=0.01)
 
 
 @pytest.mark.parametrize(

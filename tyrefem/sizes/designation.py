@@ -1,4 +1,4 @@
-"""A tyre's size as it stands on its wall: ``205/60R15 91V``, ``11R22.5``, ``22x5.5 8PR``, ``H44.5x16.5-21``."""
+"""A tyre's size as it stands on its wall: ``205/60R15 91V``, ``31x10.50R15LT``, ``11R22.5``, ``H44.5x16.5-21``."""
 
 from __future__ import annotations
 
@@ -6,27 +6,35 @@ import re
 from dataclasses import dataclass
 
 from tyrefem.errors import InputError
+from tyrefem.sizes.flotation import BELOW_NOMINAL, NARROW
 from tyrefem.sizes.load_index import load_of_index
 
 INCH, MM = 0.0254, 1e-3
 _NUMBER = r"\d{1,4}(?:\.\d{1,3})?"
 #: Load index with speed symbol, as "91V", "152/148M", "(94Y)", "98W XL".
 _SERVICE = r"(?:\s+\(?(?P<index>\d{2,3})(?:/\d{2,3})?\s*(?P<symbol>[A-HJ-NP-Y])\)?)?(?:\s*XL)?"
-_PLIES = r"(?:\s*,?\s*(?P<plies>\d{1,2})\s*-?\s*(?:PR|ply))?"
+_PLIES = r"(?:\s*,?\s*(?P<plies>\d{1,2})\s*-?\s*(?:PR|ply(?:\s*rating)?))?"
+#: Load range behind the rim, as "/E" or " E"; without LT before the size a C is that of commercial tyres.
+_RANGE = r"(?:(?P<slash>\s?/\s?|\s?)(?P<letter>[B-H])(?![A-Z0-9]))?"
 _METRIC = re.compile(
-    rf"(?P<service>P|LT)?\s?(?P<width>\d{{3}})/(?P<series>\d{{2,3}})\s?Z?(?P<build>R|-|D|B)F?\s?"
-    rf"(?P<rim>\d{{2}}(?:\.5)?)(?P<commercial>C)?{_SERVICE}{_PLIES}",
+    rf"(?P<service>P|LT)?\s?(?P<width>\d{{3}})\s?/\s?(?P<series>\d{{2,3}})\s?Z?(?P<build>R|-|D|B)F?\s?"
+    rf"(?P<rim>\d{{2}}(?:\.5)?){_RANGE}{_SERVICE}{_PLIES}",
     re.IGNORECASE,
 )
 _TRUCK = re.compile(
-    rf"(?P<width>\d{{1,2}}(?:\.\d{{1,2}})?)(?P<build>R)(?P<rim>\d{{2}}\.5){_SERVICE}{_PLIES}", re.IGNORECASE
+    rf"(?P<width>\d{{1,2}}(?:\.\d{{1,2}})?)\s?(?P<build>R)\s?(?P<rim>\d{{2}}\.5){_SERVICE}{_PLIES}", re.IGNORECASE
+)
+_FLOTATION = re.compile(
+    rf"(?P<service>LT)?\s?(?P<outside>\d{{2}}(?:\.\d)?)\s?[x×X]\s?(?P<width>\d{{1,2}}(?:\.\d{{1,2}})?)\s?Z?"
+    rf"(?P<build>R|-|D|B)\s?(?P<rim>\d{{2}}(?:\.5)?)(?:\s?(?P<light>LT))?{_RANGE}{_SERVICE}{_PLIES}",
+    re.IGNORECASE,
 )
 #: Inch sizes for flat rims with 5 degree seats, with tube or flap: ``12.00R20``.
 _FLAT_RIM = re.compile(
     rf"(?P<width>\d{{1,2}}(?:\.\d{{1,2}})?)\s?R\s?(?P<rim>\d{{2}})(?:LT|C)?{_SERVICE}{_PLIES}", re.IGNORECASE
 )
 _AIRCRAFT = re.compile(
-    rf"(?P<service>[BCH])?(?P<outside>{_NUMBER})\s?[x×X]\s?(?P<width>{_NUMBER})(?:\s?(?P<build>[-R])\s?(?P<rim>{_NUMBER}))?{_PLIES}",
+    rf"(?:(?P<service>[BCH])\s?)?(?P<outside>{_NUMBER})\s?[x×X]\s?(?P<width>{_NUMBER})(?:\s?(?P<build>[-R])\s?(?P<rim>{_NUMBER}))?{_PLIES}",
     re.IGNORECASE,
 )
 #: Diameter of a flat rim -> that of the 15 degree rim of the same tyre without tube, in; the width's number rises by
@@ -37,6 +45,7 @@ EXAMPLES = (
     "205/60R15",
     "P205/60R15 91V",
     "LT245/75R16",
+    "31x10.50R15LT",
     "295/80R22.5",
     "11R22.5",
     "22x5.5 8PR",
@@ -46,6 +55,11 @@ EXAMPLES = (
 #: Height of a truck section over its width where the size gives the width in inches. Estimate: 10R22.5 to 12R22.5
 #: are 0.85 to 0.88 by the standard (ETRTO, from memory).
 FULL_SERIES = 0.865
+#: Load range of a ply rating (Tire and Rim Association, from memory).
+LOAD_RANGES = {6: "C", 8: "D", 10: "E", 12: "F"}
+#: Without LT, widths from here on that are written to the half inch, on rims from here on, are of light trucks, in:
+#: radial aircraft tyres have none of them (makers' data books, from memory), nor has the shipped data book ".50".
+LEAST_FLOTATION = (8.5, 14)
 
 
 @dataclass(frozen=True)
@@ -53,7 +67,8 @@ class TyreSize:
     """A size, SI units; None: the text does not tell.
 
     ``kind``: the rules that it follows, a module of `tyrefem.sizes.kinds`. ``series``: section height over width.
-    ``outside_diameter``: of aircraft sizes, which give it in place of the series.
+    ``outside_diameter``: nominal, of aircraft and flotation sizes, which give it in place of the series.
+    ``load_range``: letter C to F of light-truck sizes, from the letter or the ply rating.
 
     >>> size = parse_size("205/60R15 91V")
     >>> size.kind, round(size.width, 3), size.series, round(size.rim_diameter, 3), size.load
@@ -70,6 +85,7 @@ class TyreSize:
     outside_diameter: float | None = None
     load: float | None = None
     ply_rating: int | None = None
+    load_range: str | None = None
 
     @property
     def section_height(self) -> float | None:
@@ -80,7 +96,7 @@ class TyreSize:
     def prefix(self) -> str:
         """Letter before an aircraft size, B, C or H (how narrow its rim is); else nothing."""
         first = self.text[:1].upper()
-        return first if first in {"B", "C", "H"} else ""
+        return first if first in {"B", "C", "H"} and self.kind.startswith("aircraft") else ""
 
 
 def parse_size(text: object) -> TyreSize:
@@ -103,6 +119,8 @@ def parse_size(text: object) -> TyreSize:
         return TyreSize(
             _tidy(tidy), "truck", width, FULL_SERIES, float(match["rim"]) * INCH, None, _load(match), _plies(match)
         )
+    if (match := _FLOTATION.fullmatch(tidy)) and _is_flotation(match):
+        return _flotation(tidy, match)
     if match := _AIRCRAFT.fullmatch(tidy):
         return _aircraft(tidy, match)
     if match := _FLAT_RIM.fullmatch(tidy):
@@ -110,6 +128,10 @@ def parse_size(text: object) -> TyreSize:
             f"'{text}' is a size for flat rims with 5 deg seats, which have no rules here; truck sizes are for 15 deg "
             f"rims (diameters in half inches), such as 11R22.5 or 295/80R22.5{_tubeless(match)}",
             field="size",
+        )
+    if re.search(r"\bM/C\b", tidy, re.IGNORECASE):
+        raise InputError(
+            f"'{text}' is a motorcycle size, which has no rules here; allowed are sizes like {_listed()}", field="size"
         )
     raise InputError(f"'{text}' is no tyre size{_nearest(tidy)}", field="size")
 
@@ -122,7 +144,9 @@ def looks_like_size(text: object) -> bool:
     """
     if not isinstance(text, str) or text.lower().endswith(".toml"):
         return False
-    return bool(re.match(r"\s*(?:P|LT|[BCH])?\s?\d+(?:\.\d+)?\s?(?:/\s?\d|[x×X]\s?\d|R\s?\d)", text, re.IGNORECASE))
+    usual = r"\s*(?:P|LT|[BCH])?\s?\d+(?:[.,]\d+)?\s?(?:/\s?\d|[x×X]\s?\d|Z?R\s?\d)"
+    other = r"\s*(?:[A-Z]{1,2}\s?\d{3}/\d\d|\d+\.\d\d\s?-\s?\d)"
+    return bool(re.match(f"(?:{usual}|{other})", text, re.IGNORECASE))
 
 
 def _metric(text: str, match: re.Match[str]) -> TyreSize:
@@ -137,13 +161,84 @@ def _metric(text: str, match: re.Match[str]) -> TyreSize:
         raise InputError(
             f"'{text}' has the series {series:g}; allowed: 20 to 100 (section height in % of the width)", field="size"
         )
+    light = (match["service"] or "").upper() == "LT"
     kind = "passenger"
     if rim % 1:
         kind = "truck"
-    elif (match["service"] or "").upper() == "LT" or match["commercial"]:
+    elif light or (match["letter"] or "").upper() == "C":
         kind = "light-truck"
+    if match["letter"] and not light and (kind != "light-truck" or "/" in match["slash"]):
+        whole = f"LT{text.removeprefix(match['service'] or '').strip()}"
+        raise InputError(f"'{text}': load ranges belong to light-truck sizes, which are written {whole}", field="size")
+    if kind == "passenger" and not match["width"].endswith("5"):
+        raise InputError(
+            f"'{text}' is no car size, whose widths end in 5, but one of motorcycles or tractors, which have no rules "
+            f"here; nearest: {text.replace(match['width'], str(int(match['width']) + 5), 1)}",
+            field="size",
+        )
     width = float(match["width"]) * MM
-    return TyreSize(_tidy(text), kind, width, series / 100, rim * INCH, None, _load(match), _plies(match))
+    load_range = _load_range(text, match, "CDE") if light else None
+    return TyreSize(_tidy(text), kind, width, series / 100, rim * INCH, None, _load(match), _plies(match), load_range)
+
+
+def _is_flotation(match: re.Match[str]) -> bool:
+    """Is a size diameter x width - rim one of a light truck? Without LT, load range or load index see
+    `LEAST_FLOTATION`."""
+    if match["service"] or match["light"] or match["letter"] or match["index"]:
+        return True
+    width, rim, plies = match["width"], float(match["rim"]), _plies(match)
+    half = width.endswith(".50") or (width.endswith(".5") and match["build"].upper() == "R")
+    road = float(width) >= LEAST_FLOTATION[0] and rim >= LEAST_FLOTATION[1] and rim % 1 == 0
+    return half and road and (plies is None or plies in LOAD_RANGES)
+
+
+def _flotation(text: str, match: re.Match[str]) -> TyreSize:
+    outside, width, rim = (float(match[name]) for name in ("outside", "width", "rim"))
+    if match["build"].upper() != "R":
+        plain = f"{match['outside']}x{match['width']}"
+        aircraft = f"; an aircraft tyre is written {match['outside']}x{width:g}-{match['rim']}"
+        light = match["service"] or match["light"] or match["letter"] or match["index"]
+        raise InputError(
+            f"'{text}' is a bias-ply light-truck size, which has no rules here; radials are written "
+            f"{plain}R{match['rim']}LT{'' if light else aircraft}",
+            field="size",
+        )
+    if rim % 1:
+        raise InputError(
+            f"'{text}' is for 15 deg rims of {rim:g} in, which have no rules here; nearest: "
+            f"{match['outside']}x{match['width']}R{rim + 0.5:g}LT",
+            field="size",
+        )
+    height = (outside * INCH - BELOW_NOMINAL - rim * INCH) / 2
+    series = height / (width * INCH)
+    if not 0.2 <= series <= 1.1:
+        raise InputError(
+            f"'{text}' is no light-truck size: its outside diameter, width and rim diameter do not go together"
+            "; allowed: diameter x width R rim LT, in inches, such as 31x10.50R15LT",
+            field="size",
+        )
+    load_range = _load_range(text, match, "CDE" if width * INCH <= NARROW + 1e-6 else "CDEF")
+    return TyreSize(
+        _tidy(text),
+        "light-truck",
+        width * INCH,
+        series,
+        rim * INCH,
+        outside * INCH,
+        _load(match),
+        _plies(match),
+        load_range,
+    )
+
+
+def _load_range(text: str, match: re.Match[str], allowed: str) -> str | None:
+    """The load range of a light-truck size, by its letter or its ply rating."""
+    plies = _plies(match)
+    letter = (match["letter"] or "").upper() or (None if plies is None else LOAD_RANGES.get(plies, f"of {plies}PR"))
+    if letter is not None and letter not in allowed:
+        ratings = ", ".join(f"{x} ({n}PR)" for n, x in LOAD_RANGES.items() if x in allowed)
+        raise InputError(f"'{text}' has the load range {letter}; allowed: {ratings}", field="size")
+    return letter
 
 
 def _aircraft(text: str, match: re.Match[str]) -> TyreSize:
@@ -196,12 +291,18 @@ def _nearest(text: str) -> str:
         attempts.reverse()
     before = text[: numbers[0].start()].strip().upper() if numbers else ""
     after = text[numbers[min(len(numbers), 3) - 1].end() :] if numbers else ""
-    for attempt in (
+    rewritten = [
+        text.replace(",", "."),
+        re.sub(r"^(\d{2}5)\s?R\s?(?=\d{2}\D|\d{2}$)", r"\1/80R", text, flags=re.IGNORECASE),
+        re.sub(r"^(\d{3}/\d{2,3}Z?R\d{2})\s?LT", r"LT\1", text, flags=re.IGNORECASE),
+    ]
+    pieces = [
         whole
         for plain in attempts
         for whole in (f"{before}{plain}{after}", f"{before}{plain}", f"{plain}{after}", plain)
-    ):
-        if not any(form.fullmatch(attempt) for form in (_METRIC, _TRUCK, _AIRCRAFT)):
+    ]
+    for attempt in rewritten + pieces:
+        if not any(form.fullmatch(attempt) for form in (_METRIC, _TRUCK, _FLOTATION, _AIRCRAFT)):
             continue
         try:
             parse_size(attempt)

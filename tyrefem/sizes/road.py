@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from tyrefem.errors import InputError
 from tyrefem.sizes.designation import INCH, TyreSize
+from tyrefem.sizes.flotation import LOAD_SOURCE, load_by_volume, pressure_of
 from tyrefem.sizes.load_index import GRAVITY, ROAD_EXPONENT, check_carries
 from tyrefem.sizes.rim import Rim
 from tyrefem.sizes.rules import Rules
@@ -91,6 +92,21 @@ def rated(size: TyreSize, rule: Rules, density: float, pressure: float, source: 
     words = f"estimate: {density:g} kg per litre of width x height x mean diameter; {source}"
     if size.load is not None:
         load, words = size.load, "of the load index (ISO 4000-1)"
+    return _of_use(rule, load, words, pressure, source)
+
+
+def rated_flotation(size: TyreSize, rule: Rules) -> float:
+    """`rated` of a light-truck size that gives the diameter: by its load range, its load index, or load range C."""
+    width, height, rim = size.width, size.section_height or 0.0, size.rim_diameter or 0.0
+    pressure, source = pressure_of(width, height, rim, size.load_range, size.load)
+    load, words = round(load_by_volume(width, height, rim, pressure), -1), f"estimate: {LOAD_SOURCE}"
+    if size.load is not None:
+        load, words = size.load, "of the load index (ISO 4000-1)"
+    return _of_use(rule, load, words, pressure, source)
+
+
+def _of_use(rule: Rules, load: float, words: str, pressure: float, source: str) -> float:
+    """Rated load and pressure as rules; a load and pressure of use checked against them. The rated pressure."""
     load = rule("rated_load", load, "N", words, 100, 1e6)
     pressure = rule("rated_pressure", pressure, "kPa", source, 5e4, 2e6)
     if "load" in rule.given or "pressure" in rule.given:

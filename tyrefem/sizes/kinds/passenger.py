@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from tyrefem.sizes import flotation
 from tyrefem.sizes.bead import bead_wire_area
 from tyrefem.sizes.belt import Belt
 from tyrefem.sizes.cards import radial_cards
@@ -10,7 +11,15 @@ from tyrefem.sizes.drawn import Drawn
 from tyrefem.sizes.radial import Radial
 from tyrefem.sizes.radial_layers import RadialLayers
 from tyrefem.sizes.radial_line import with_line
-from tyrefem.sizes.road import STANDARD, check_rim_diameter, design_width, measuring_rim, rated, road_rim
+from tyrefem.sizes.road import (
+    STANDARD,
+    check_rim_diameter,
+    design_width,
+    measuring_rim,
+    rated,
+    rated_flotation,
+    road_rim,
+)
 from tyrefem.sizes.rules import Rules
 
 #: Series -> measuring rim over nominal width, up to that series.
@@ -30,29 +39,32 @@ def draw_with(
     """A passenger construction. ``tread``: gauge, m; ``density`` of the load, kg/l; ``apex`` over section height."""
     series, height = size.series or 0.0, size.section_height or 0.0
     diameter = check_rim_diameter(size)
+    inches = size.outside_diameter is not None
     share = next(share for top, share in RIM_SHARES if series <= top)
-    rim_width = measuring_rim(
-        size, rule, share, INCH / 2, f"{STANDARD}: measuring rim, {share:g} nominal widths to the half inch"
-    )
+    words = f"{STANDARD}: measuring rim, {share:g} nominal widths to the half inch"
+    if inches:
+        share, words = flotation.RIM_SHARE, flotation.RIM_SOURCE
+    rim_width = measuring_rim(size, rule, share, INCH / 2, words)
     rim = road_rim(rule, diameter, rim_width, 17.3e-3, 9.5e-3, 0.0872664626, f"J contour of a 5 deg seat, {STANDARD}")
-    outer = rule(
-        "outer_diameter", diameter + 2 * height, "mm", f"{STANDARD}: rim diameter + 2 section heights", diameter + 0.04
-    )
-    design_width(size, rule, rim_width, 0.85 if series < 0.5 else 0.7)
-    pressure = rated(
-        size,
-        rule,
-        density,
-        pressure,
-        f"reference pressure {pressure / 1e3:g} kPa ({STANDARD}); mean of eight sizes, 3 % either way",
-    )
-    tread_width = rule(
-        "tread_width",
-        (1.075 - 0.5 * series) * size.width,
-        "mm",
-        "design tread width (1.075 - 0.5 series) x nominal width (from memory of the Tire and Rim Association)",
-        0.4 * size.width,
-    )
+    words = flotation.DIAMETER_SOURCE if inches else f"{STANDARD}: rim diameter + 2 section heights"
+    outer = rule("outer_diameter", diameter + 2 * height, "mm", words, diameter + 0.04)
+    theoretical = 0.85 if series < 0.5 else 0.7
+    design_width(size, rule, rim_width, flotation.RIM_SHARE if inches else theoretical)
+    if inches:
+        pressure = rated_flotation(size, rule)
+    else:
+        pressure = rated(
+            size,
+            rule,
+            density,
+            pressure,
+            f"reference pressure {pressure / 1e3:g} kPa ({STANDARD}); mean of eight sizes, 3 % either way",
+        )
+    tread_share = 1.075 - 0.5 * series
+    words = "design tread width (1.075 - 0.5 series) x nominal width (from memory of the Tire and Rim Association)"
+    if inches:
+        tread_share, words = flotation.TREAD_SHARE, flotation.TREAD_SOURCE
+    tread_width = rule("tread_width", tread_share * size.width, "mm", words, 0.4 * size.width)
     radius = 1.65 * size.width / series
     rule(
         "crown_radius",
