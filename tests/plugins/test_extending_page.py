@@ -63,6 +63,16 @@ def test_a_study_with_the_page_s_table_uses_it(write: Write, tmp_path: Path, kin
     assert f"{plugin.name}, from {file}" in (tmp_path / "report.html").read_text(encoding="utf-8")
 
 
+@pytest.mark.parametrize("presses", [False, True])
+def test_a_law_that_presses_says_so_for_the_effects_of_pressure(write: Write, presses: bool) -> None:
+    """The flag of the class decides, not its name."""
+    write("strain-law", ("    # The energies go", f"    presses: ClassVar[bool] = {presses}\n    # The energies go"))
+    law = tomllib.loads(PARTS["strain-law"][1])["mechanics"]["strain"]
+    leak = {"mechanics.strain": law, "effects": [{"name": "pressure-loss", "rate": "2 kPa/min"}]}
+    warnings = tf.study("nasa-22x5.5-8pr", COARSE | leak).warnings
+    assert [warning.field for warning in warnings] == ["effects.pressure-loss"] * presses
+
+
 def test_the_tread_of_the_page_has_its_friction(write: Write) -> None:
     write("friction-law")
     law = material({"base": "nasa-tread", **chosen("friction-law")}).friction

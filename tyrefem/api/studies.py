@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -10,6 +11,8 @@ from tyrefem.api.result import Campaign, Result
 from tyrefem.api.study_mechanics import StudyMechanics
 from tyrefem.api.study_questions import StudyQuestions
 from tyrefem.api.verbs import shown, with_verbs
+from tyrefem.errors import InputWarning
+from tyrefem.mechanics.cautions import cautions
 from tyrefem.mechanics.strain_laws import strain_law
 
 if TYPE_CHECKING:
@@ -29,6 +32,11 @@ class Study(StudyQuestions, StudyMechanics):
         super().__post_init__(like, built)
         # The data's package does not import the strain laws; this class checks their name.
         strain_law(self)
+
+    @functools.cached_property
+    def warnings(self) -> tuple[InputWarning, ...]:
+        """Warnings of unusual input in the study, its section, its material cards and its effects."""
+        return tuple(dict.fromkeys((*super().warnings, *cautions(self))))
 
     def _repr_html_(self) -> str | None:
         from tyrefem.reports.notebook import study_page

@@ -181,6 +181,7 @@ def sweep(
     the same command continues an interrupted one.
     """
     from tyrefem.cli.sweep_flags import computed_design, questions, questions_of_flags
+    from tyrefem.mechanics.cautions import warnings_of
     from tyrefem.quantity import parse
     from tyrefem.reports.sweep_files import file_names, kept_names, save
     from tyrefem.reports.sweep_variants import chosen_variants, refuse_unknown, write_variants
@@ -198,7 +199,7 @@ def sweep(
         raise error if error.field else error.within(field="--tolerance") from None
     name, wanted = questions(study, given, settings(changes), case)
     refuse_unknown(wanted.plan, vtk or ())
-    warn(wanted.study.warnings)
+    warn(warnings_of(wanted.study))
     place = out or Path("results") / f"{name}-sweep"
     with (
         results_folder(place, "sweep", file_names(), force=force, keeps=kept_names()) as folder,

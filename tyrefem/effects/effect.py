@@ -224,6 +224,11 @@ class Effect(Card):
         """What a person should know of the effect in a study, as a warning; None: nothing."""
         return None
 
+    @classmethod
+    def beside_pressing(cls, study: StudyOfTyre) -> str | None:
+        """`caution` beside a strain law that presses the tyre on the road itself (``StrainLaw.presses``)."""
+        return None
+
     def problem(self, study: StudyOfTyre) -> str | None:
         """Error of this effect in a study (not possible there, or unknown choice such as a sensor), or None."""
         return self.refusal(study)

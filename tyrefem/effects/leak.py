@@ -14,31 +14,23 @@ def deflection_change(tyre: Tyre, t: float, pressure_factor: float) -> float:
     return law.deflection(load, pressure_factor * pressure, rating) / law.deflection(load, pressure, rating)
 
 
-#: The strain law that presses the tyre on the road itself, and what to do beside it.
-PRESSES = "fem"
+#: What to do beside a strain law that presses the tyre on the road itself.
 INSTEAD = "a ramp of the drive's pressure, or mechanics.feedback.pressure, is pressed at its own deflections"
 
 
 def no_load(study: StudyOfTyre) -> str | None:
     """Why pressure does not matter in a study: its drive gives the deflection, or its law knows no pressure."""
     if study.card.mechanics.load_law.law == "vertical-stiffness":
-        if study.card.mechanics.strain == PRESSES:
-            return (
-                f"it follows mechanics.load_law, and 'vertical-stiffness' does not depend on pressure; beside strain = "
-                f"'{PRESSES}' {INSTEAD}"
-            )
-        return "the deflection is that of mechanics.load_law, and 'vertical-stiffness' does not depend on pressure"
+        return (
+            "the deflection is that of mechanics.load_law, and 'vertical-stiffness' does not depend on pressure; beside "
+            f"a strain law that presses the tyre itself, such as 'fem', {INSTEAD}"
+        )
     if all(phase.load is None for phase in study.card.drive.phases):
         return "the drive gives the deflection, which pressure then does not change"
     return None
 
 
-def of_load_law(study: StudyOfTyre) -> str | None:
+def of_load_law(study: StudyOfTyre) -> str:
     """What to know beside a strain law that presses the tyre: the change of deflection is still the load law's."""
-    mechanics = study.card.mechanics
-    if mechanics.strain != PRESSES:
-        return None
-    return (
-        f"changes the deflection by mechanics.load_law '{mechanics.load_law.law}', not by the strain law '{PRESSES}': "
-        f"an estimate; {INSTEAD}"
-    )
+    law = study.card.mechanics.load_law.law
+    return f"changes the deflection by mechanics.load_law '{law}', not by pressing the tyre: an estimate; {INSTEAD}"

@@ -47,6 +47,6 @@ class PressureRise(Effect):
         return no_load(study)
 
     @classmethod
-    def caution(cls, study: StudyOfTyre) -> str | None:
-        """The deflection of finite elements is not asked."""
+    def beside_pressing(cls, study: StudyOfTyre) -> str | None:
+        """The deflection of the pressed tyre is not asked."""
         return of_load_law(study)

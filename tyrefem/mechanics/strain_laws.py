@@ -33,7 +33,8 @@ class StrainLaw(ABC):
     title: ClassVar[str] = ""
     #: True: a load case takes seconds, as with finite elements; studies with the same cycles then share them.
     by_elements: ClassVar[bool] = False
-    #: True: the law solves the contact with the road; load law and footprint law of the study are then not used.
+    #: True: the law solves the contact with the road and so follows load and pressure by itself; load law and footprint
+    #: law of the study are then not used, except by effects that change the pressure: these warn of it.
     presses: ClassVar[bool] = False
     #: True: `tyrefem strain` compares the law, which needs no further inputs.
     compared: ClassVar[bool] = True

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tyrefem.brief import Brief, cut, heading_of, short
+from tyrefem.mechanics.cautions import warnings_of
 from tyrefem.reports.figures.style import FILLS
 
 if TYPE_CHECKING:
@@ -67,7 +68,7 @@ def _svg(content: str, label: str, width: float = WIDTH, height: float = HEIGHT)
 
 def study_page(study: StudyData) -> str:
     """A study: whether it can run as it is, and its section with the regions and sensors."""
-    warnings = study.warnings
+    warnings = warnings_of(study)
     ready = f"Ready to run: {study.title}"
     if warnings:
         ready += f" - {len(warnings)} warning{'s' if len(warnings) > 1 else ''}, the first: {warnings[0]}"

@@ -17,6 +17,7 @@ from tyrefem.conduction.points import OutsideMeshError, as_points
 from tyrefem.errors import InputError
 from tyrefem.geometry.meshing.sagitta import snapped
 from tyrefem.geometry.wall import inside_mesh, wall_of
+from tyrefem.mechanics.cautions import warnings_of
 from tyrefem.quantity import KELVIN
 from tyrefem.simulation.effect_states import StateHistory
 from tyrefem.simulation.heat_budget import HeatBudget, whole_tyre
@@ -364,7 +365,7 @@ class ResultData(Brief):
     def warnings(self) -> tuple[str, ...]:
         """Warnings of unusual input, and of phases outside the range of the assumptions; one line each."""
         return (
-            *map(str, self.study.warnings),
+            *map(str, warnings_of(self.study)),
             *((CASES_LEFT_OUT,) if self.study.is_campaign else ()),
             *(() if self.feedback is None else self.feedback.warnings),
             *deep_contacts(self.study.section, self.phases),
