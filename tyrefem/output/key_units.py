@@ -19,4 +19,22 @@ def unit_of(key: str) -> str:
     >>> unit_of("load_N"), unit_of("films_W_m2_K"), unit_of("gradient_K_m"), unit_of("harmonics")
     ('N', 'W/m2/K', 'K/m', '')
     """
-    return next((unit for end, unit in UNITS.items() if key.endswith(end)), "")
+    return UNITS.get(ending(key), "")
+
+
+def ending(key: str) -> str:
+    """The end of a key that is its unit; empty: a pure number, or no number.
+
+    >>> ending("gradient_K_m"), ending("life_log10_km"), ending("harmonics")
+    ('_K_m', '_log10_km', '')
+    """
+    return next((end for end in UNITS if key.endswith(end)), "")
+
+
+def readable(unit: str) -> str:
+    """A unit as people read it.
+
+    >>> readable("degC"), readable("J/m3"), readable("m2/s")
+    ('°C', 'J/m³', 'm²/s')
+    """
+    return unit.replace("degC", "°C").replace("m2", "m²").replace("m3", "m³")

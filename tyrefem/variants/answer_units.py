@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from tyrefem.output import key_units
+from tyrefem.output.key_units import ending, readable
+
 #: Words for answers whose name alone is not clear.
 WORDS = {
     "hottest_degC": "highest temperature",
@@ -24,11 +27,6 @@ WORDS = {
     "life_peak_J_m3": "peak cracking energy of the place that fails first",
     "time_to_limit_s": "time to the given temperature",
 }
-_UNITS = {
-    "_log10_km": "", "_km": "km", "_J_m3": "J/m³",
-    "_degC": "°C", "_K_m": "K/m", "_Pa": "Pa", "_kg": "kg", "_J": "J", "_N": "N", "_time_s": "s", "_limit_s": "s",
-    "_m": "m",
-}  # fmt: skip
 
 
 def shown(name: str, value: float, digits: int = 4) -> str:
@@ -49,18 +47,19 @@ def name_of(answer: str) -> str:
     >>> name_of("hottest_degC"), name_of("crown-inner_max_degC"), name_of("load_N")
     ('highest temperature', 'crown-inner max', 'load')
     """
-    end = next((end for end in _UNITS if answer.endswith(end)), "")
-    # "_time_s" and "_limit_s" are words with the unit s.
-    without = answer.removesuffix("_s" if end in ("_time_s", "_limit_s") else end)
+    end = ending(answer)
+    # "tkph" is a name and its unit in one.
+    without = answer.removesuffix(end) if end.startswith("_") else answer
     return WORDS.get(answer, without.replace("_", " "))
 
 
 def unit_of(name: str) -> str:
-    """Unit of an answer, from the end of its name; °C for temperatures, empty for shares and coefficients."""
-    for end, unit in _UNITS.items():
-        if name.endswith(end):
-            return unit
-    return ""
+    """Unit of an answer, from the end of its name; °C for temperatures, empty for shares and coefficients.
+
+    >>> unit_of("hottest_degC"), unit_of("life_peak_J_m3"), unit_of("films_W_m2_K")
+    ('°C', 'J/m³', 'W/m²/K')
+    """
+    return readable(key_units.unit_of(name))
 
 
 def difference_unit(name: str) -> str:
