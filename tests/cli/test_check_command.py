@@ -9,6 +9,7 @@ import pytest
 
 from tyrefem import library
 from tyrefem.api import study
+from tyrefem.cards.file_kinds import FILES
 from tyrefem.cli import main
 from tyrefem.compare.study_check import check_study
 from tyrefem.errors import InputError
@@ -89,7 +90,7 @@ def test_bad_files(here: Path, refused: Callable[..., str], name: str) -> None:
 def test_missing_file_empty_folder_and_a_link_to_nowhere(here: Path, refused: Callable[..., str]) -> None:
     assert "nowhere.toml: no such file" in refused("check", "nowhere.toml")
     (here / "folder").mkdir()
-    assert "folder: this folder has no study.toml, sweep.toml, rig.toml or thermal.toml" in refused("check", "folder")
+    assert "folder: this folder has no sweep.toml, thermal.toml, rig.toml or study.toml" in refused("check", "folder")
     (here / "link.toml").symlink_to("nothing")
     assert "link.toml: cannot be read" in refused("check", "link.toml")
 
@@ -132,3 +133,11 @@ def test_a_file_of_another_kind_names_the_command_that_reads_it(here: Path, refu
 @pytest.mark.parametrize("empty", [["--out", ""], ["--out="]])
 def test_an_empty_folder_for_results_is_refused(refused: Callable[..., str], empty: list[str]) -> None:
     assert "--out: is empty; give a path" in refused("run", "nasa-22x5.5-8pr", *empty)
+
+
+@pytest.mark.parametrize("name", FILES.values())
+def test_a_folder_of_every_kind_of_file_is_checked(here: Path, refused: Callable[..., str], name: str) -> None:
+    """A new kind of folder is known to the command from the list of kinds."""
+    (here / "folder").mkdir()
+    (here / "folder" / name).write_text("", encoding="utf-8")
+    assert f"{name}: is empty" in refused("check", "folder")

@@ -44,10 +44,13 @@ def check(
     if study is not None:
         raise InputError("goes with a Python file of plugins", field="--study")
     if path.is_dir():
-        names = ("rig.toml", "sweep.toml", "thermal.toml", "study.toml")
-        path = path / next((name for name in names if (path / name).is_file()), "study.toml")
+        from tyrefem.cards.file_kinds import FILES
+
+        # A sweep, card or rig may have its study beside it: the study comes last.
+        names = list(reversed(FILES.values()))
+        path = path / next((name for name in names if (path / name).is_file()), FILES["study"])
         if not path.is_file():
-            raise InputError("this folder has no study.toml, sweep.toml, rig.toml or thermal.toml", file=file)
+            raise InputError(f"this folder has no {', '.join(names[:-1])} or {names[-1]}", file=file)
     if not os.path.lexists(path):
         from tyrefem import library
 
