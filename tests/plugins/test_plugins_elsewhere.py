@@ -30,6 +30,11 @@ OWN = {
     "mechanics.strain": "crown-to-bead",
     "effects": [{"name": "lamp", "shine": "50 W/m**2"}],
 }
+OWN_OF_KIND = {
+    "strain-law": {"mechanics.strain": "crown-to-bead"},
+    "effect": {"effects": OWN["effects"]},
+    "boundary-law": {"boundaries.outside_air": FILM},
+}
 KINDS = ("effect", "boundary-law", "tan-delta-law", "strain-law")
 
 
@@ -223,3 +228,18 @@ def test_a_tyre_rolls_with_an_own_friction_law_as_with_the_same_shipped_one(writ
         forces.append(rolled.summary()["F_y_N"])
     assert forces[1] == pytest.approx(forces[0], rel=1e-8)
     assert abs(forces[2]) < 0.99 * abs(forces[0])
+
+
+@pytest.mark.parametrize("kind", ["strain-law", "effect", "boundary-law"])
+def test_a_loaded_run_names_the_plugin_that_is_missing(
+    write: Write, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, kind: str
+) -> None:
+    file = write(kind)
+    changes = {"mesh.size": "14 mm", "mesh.element": "P1", "drive.duration": "30 s", **OWN_OF_KIND[kind]}
+    tf.study("nasa-22x5.5-8pr", changes).run().save(tmp_path / "out")
+    assert tf.load(tmp_path / "out").study.card is not None
+    monkeypatch.setenv("TYREFEM_PLUGINS", "")
+    with pytest.raises(tf.InputError) as caught:
+        tf.load(tmp_path / "out")
+    assert f"the result used the {kind.replace('-', ' ')} '" in str(caught.value)
+    assert f"of {file}, which this process has not: set TYREFEM_PLUGINS={file.parent}, or" in str(caught.value)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tyrefem.api.record import Record, read_json
+from tyrefem.api.record import Record, naming_plugins, read_json
 from tyrefem.api.result import Result
 from tyrefem.api.studies import Study
 from tyrefem.api.verbs import with_verbs
@@ -52,12 +52,14 @@ def load(folder: str | Path) -> Result | Comparison | DiagnosisRecord | Record:
     if not place.is_dir():
         raise InputError(f"no such folder of results{_near(place)}", file=place)
     if (place / FILE).is_file():
-        return with_verbs(Result, read_result(place / FILE, Study))
+        with naming_plugins(place):
+            return with_verbs(Result, read_result(place / FILE, Study))
     if all((place / name).is_file() for name in COMPARISON):
         from tyrefem.api.comparison import Comparison
         from tyrefem.compare.stored import read_comparison
 
-        return with_verbs(Comparison, read_comparison(place))
+        with naming_plugins(place):
+            return with_verbs(Comparison, read_comparison(place))
     if (place / "verdict.json").is_file():
         from tyrefem.api.diagnosis_record import DiagnosisRecord
 

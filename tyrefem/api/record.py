@@ -5,7 +5,8 @@ from __future__ import annotations
 import functools
 import itertools
 import json
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,6 +16,7 @@ from tyrefem.brief import Brief
 from tyrefem.errors import InputError, nearest
 from tyrefem.output import SUMMARY
 from tyrefem.output.folder import BOOKKEEPING
+from tyrefem.plugins.missing import words_of_missing
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -105,7 +107,10 @@ class Record(Brief):
     def study(self) -> Study | None:
         """The study of the folder, after a diagnosis the amended one; None: the folder has none."""
         file = next((self.folder / name for name in STUDIES if (self.folder / name).is_file()), None)
-        return None if file is None else Study.load(file)
+        if file is None:
+            return None
+        with naming_plugins(self.folder):
+            return Study.load(file)
 
     @property
     def page(self) -> Path | None:
@@ -128,6 +133,21 @@ def _read_table(file: Path) -> pd.DataFrame:
         above = sum(1 for _ in itertools.takewhile(lambda line: line.startswith("#"), stream))
     texts = pd.read_csv(file, usecols=lambda column: column in TEXTS, dtype=str, keep_default_na=False, skiprows=above)
     return pd.read_csv(file, skiprows=above).assign(**texts)
+
+
+@contextmanager
+def naming_plugins(folder: Path) -> Iterator[None]:
+    """Errors of a study in this block say which plugins the folder's result used that this process has not."""
+    try:
+        yield
+    except InputError as error:
+        file = folder / SUMMARY
+        rows = read_json(file).get("plugins") if file.is_file() else None
+        missing = words_of_missing(rows) if isinstance(rows, list) else ""
+        if not missing:
+            raise
+        message = f"{error.message}; {missing}"
+        raise InputError(message, field=error.field, file=error.file or folder) from None
 
 
 def read_json(file: Path) -> dict[str, Any]:

@@ -22,8 +22,8 @@ def no_load(study: StudyOfTyre) -> str | None:
     """Why pressure does not matter in a study: its drive gives the deflection, or its law knows no pressure."""
     if study.card.mechanics.load_law.law == "vertical-stiffness":
         return (
-            "the deflection is that of mechanics.load_law, and 'vertical-stiffness' does not depend on pressure; beside "
-            f"a strain law that presses the tyre itself, such as 'fem', {INSTEAD}"
+            "the deflection is that of mechanics.load_law, and 'vertical-stiffness' does not depend on pressure; "
+            f"beside a strain law that presses the tyre itself, such as 'fem', {INSTEAD}"
         )
     if all(phase.load is None for phase in study.card.drive.phases):
         return "the drive gives the deflection, which pressure then does not change"
