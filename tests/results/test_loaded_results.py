@@ -244,9 +244,35 @@ def test_folders_of_other_commands_give_summary_tables_and_study(tmp_path: Path)
     assert record.command == "sweep"
     assert record.table("sweep")["hottest_degC"].tolist() == design.table["hottest_degC"].tolist()
     assert record.summary["study"] == study.name
+    assert record.study is not None
+    assert record.study.card == study.card
     assert "tables    pareto, sweep" in repr(record)
     with pytest.raises(InputError, match="no table 'sweeep'; did you mean 'sweep'"):
         record.table("sweeep")
+
+
+def test_a_campaign_gives_its_study(tmp_path: Path) -> None:
+    """With its table of cases, though the results lie in another folder."""
+    from tyrefem.reports.campaign import run_campaign
+
+    cases = tmp_path / "mine" / "cases.csv"
+    cases.parent.mkdir()
+    cases.write_text("name,drive.speed [mph]\nslow,10\n", encoding="utf-8")
+    quick = tf.study("nasa-22x5.5-8pr", QUICK | {"mesh.size": "20 mm"})
+    own = quick.replace({"cases": str(cases)}).save(cases.with_name("study.toml"))
+    study = tf.study(str(own))
+    run_campaign(study.campaign(), tmp_path / "out")
+    summary = json.loads((tmp_path / "out" / "summary.json").read_text(encoding="utf-8"))
+    written(tmp_path / "out", summary=summary | {"command": "run"})
+    record = tf.load(tmp_path / "out")
+    assert isinstance(record, Record)
+    assert record.study is not None
+    assert record.study.is_campaign
+    assert [case.name for case in record.study.campaign().cases] == ["slow"]
+    # A campaign whose results lie beside its file keeps the file as it is.
+    before = own.read_bytes()
+    run_campaign(study.campaign(), own.parent)
+    assert own.read_bytes() == before
 
 
 def written(folder: Path, **files: Any) -> Path:

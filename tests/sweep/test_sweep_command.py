@@ -111,7 +111,7 @@ def test_from_python(tmp_path: Path) -> None:
     assert design.optimum is None
     design.save(tmp_path, pictures=False)
     assert sorted(path.name for path in tmp_path.iterdir()) == [
-        "pareto.csv", "pareto.parquet", "summary.json", "sweep.csv", "sweep.parquet"
+        "pareto.csv", "pareto.parquet", "study.toml", "summary.json", "sweep.csv", "sweep.parquet"
     ]  # fmt: skip
 
 

@@ -13,6 +13,7 @@ from tyrefem.interruption import interruption_delayed
 from tyrefem.output import atomic_path, versions, write_json
 from tyrefem.reports.figures.style import FONT, TITLE, add_axes, figure, line_style, plain, png, short, tidy, title
 from tyrefem.reports.run_files import run_files, write_tables
+from tyrefem.reports.sweep_files import STUDY, write_study_beside
 from tyrefem.reports.vtk import file_names
 from tyrefem.sweep.campaign import CampaignData, row
 
@@ -31,7 +32,7 @@ def campaign_files(campaign: CampaignData) -> list[str]:
     """The files that `run_campaign` and its report may write, relative to their folder."""
     cases = [f"cases/{escape(case.name)}/{name}" for case in campaign.cases for name in run_files(campaign.study)]
     vtk = [f"cases/{escape(case.name)}/vtk/{name}" for case in campaign.cases for name in file_names(case.name)]
-    return ["campaign.csv", "report.html", *(name for name in cases if "/vtk/" not in name), *vtk,
+    return ["campaign.csv", STUDY, "report.html", *(name for name in cases if "/vtk/" not in name), *vtk,
             *(f"cases/{escape(case.name)}/summary.json" for case in campaign.cases)]  # fmt: skip
 
 
@@ -43,12 +44,13 @@ def run_campaign(
     *,
     parquet: bool = False,
 ) -> pd.DataFrame:
-    """Run a campaign into a folder: a folder per case, ``campaign.csv`` and ``summary.json``.
+    """Run a campaign into a folder: a folder per case, ``campaign.csv``, ``study.toml`` and ``summary.json``.
 
     The table is written again after every case, so that an interrupted campaign keeps its finished cases.
     ``each`` may write more files of a case (pictures, VTK) into its folder. ``parquet``: its tables as Parquet, too.
     """
     rows: list[dict[str, Any]] = []
+    write_study_beside(campaign.study, folder)
     # Written at the start: an older campaign's table in this folder must not be taken for this one's.
     table = _write_table(campaign, rows, folder)
     for case, outcome in campaign.runs(progress):

@@ -23,9 +23,12 @@ from tyrefem.variants.store import NAME as VARIANTS
 if TYPE_CHECKING:
     import pandas as pd
 
+    from tyrefem.inputs.study import StudyData
     from tyrefem.sweep.design import DesignData
 
 PAGE = "sweep.html"
+#: The study, with the changes of the sweep's file: a `tyrefem.load` of the folder reads it.
+STUDY = "study.toml"
 
 
 def part_names() -> tuple[str, ...]:
@@ -40,6 +43,7 @@ def file_names() -> tuple[str, ...]:
     return (
         *(f"{name}.{kind}" for name in part_names() for kind in ("csv", "parquet")),
         "errors.csv",
+        STUDY,
         PAGE,
         *(f"pictures/{name}" for name in pictures),
         *(f"{VARIANT_FILES}/*/*.{kind}" for kind in ("pvd", "vtu", "py")),
@@ -52,7 +56,7 @@ def kept_names() -> tuple[str, ...]:
 
 
 def save(design: DesignData, folder: Path, *, pictures: bool = True) -> dict[str, Any]:
-    """Write ``NAME.csv`` and ``.parquet`` of every part, ``summary.json`` and the page; return the summary.
+    """Write ``NAME.csv`` and ``.parquet`` of every part, the study, ``summary.json`` and the page; return the summary.
 
     With a reduced model, also ``errors.csv``: the largest error of every answer in fresh full runs.
     Files of an earlier question are removed; its summary lists them.
@@ -65,12 +69,22 @@ def save(design: DesignData, folder: Path, *, pictures: bool = True) -> dict[str
             written += write_table(part.table, folder, part.name)
     if design.swept is not None and design.swept.certificate is not None:
         written += write_errors(design.swept, folder)
+    written += write_study_beside(design.study, folder)
     summary = summarised(design)
     if pictures:
         written += write_page(design, summary, folder)
     summary[LIST] = clear(folder, before, summary, written)
     write_json(summary, folder / "summary.json")
     return summary
+
+
+def write_study_beside(study: StudyData, folder: Path) -> list[str]:
+    """Write the study of a sweep or campaign into its folder, unless its file stands there; return the name."""
+    target = folder / STUDY
+    if study.file is not None and target.resolve() == study.file.resolve():
+        return []
+    study.save(target)
+    return [STUDY]
 
 
 def write_table(table: pd.DataFrame, folder: Path, name: str) -> list[str]:
