@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import struct
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from html.parser import HTMLParser
 
 import numpy as np
@@ -17,6 +17,7 @@ from tyrefem.cli.compare import _lines
 from tyrefem.compare import compare
 from tyrefem.compare.stored import read_comparison
 from tyrefem.errors import InputError
+from tyrefem.inputs.uncertain_numbers import UncertainNumber
 from tyrefem.output import atomic_folder, atomic_path
 from tyrefem.reports.comparison import deviations, save
 
@@ -82,6 +83,23 @@ def test_json_holds_the_table(folder, comparison):
     assert isinstance(data["rows"][0]["beyond"], bool)
     assert {item["key"] for item in data["inputs"]} == {"heat"}
     assert data["summary"] == comparison.summary
+
+
+def test_an_uncertain_temperature_stands_in_kelvins(study, tmp_path):
+    """A share of a temperature means nothing to a person."""
+
+    @dataclass(frozen=True)
+    class InAir(type(study)):
+        uncertain_numbers = (
+            UncertainNumber("air", ("air",), ("298.15 K",), 2 / 298.15),
+            UncertainNumber("heat", ("heat",), (1.0,), 0.05),
+        )
+
+    warm = InAir(uncertainty={"air": 2 / 298.15, "heat": 0.05})
+    save(compare(warm, measured_from(warm, EVERY_20)), tmp_path)
+    data = json.loads((tmp_path / "comparison.json").read_text(encoding="utf-8"))
+    assert {item["key"]: item["sd"] for item in data["inputs"]} == {"air": "±2 K", "heat": "±5 %"}
+    assert "<td>±2 K</td>" in (tmp_path / "comparison.html").read_text(encoding="utf-8")
 
 
 def test_pictures_are_pictures(folder):

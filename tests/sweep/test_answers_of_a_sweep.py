@@ -233,6 +233,18 @@ def test_a_sample_of_all_uncertain_numbers_moves_a_shared_card_as_one(tyre: Stud
         plan_of(study, {"materials.tread": ["nasa-tread", "rubber-tread-aircraft"]}, uncertain=1)
 
 
+def test_an_uncertain_temperature_is_a_column_of_degrees(tyre: Study) -> None:
+    """A factor on kelvins means nothing to a person."""
+    study = tyre.replace({"drive.ambient": "25 degC", "uncertainty": {"drive.ambient": "3 K", "drive.load": "2 %"}})
+    plan = plan_of(study, {}, uncertain=2, sample="latin-hypercube", count=8)
+    ambient = [plan.row(n)["drive.ambient [degC]"] for n in range(8)]
+    assert 19 <= min(ambient) < 20.5
+    assert 29.5 < max(ambient) <= 31
+    assert plan.variants[0]["drive.ambient"] == f"{ambient[0]:.9g} degC"
+    assert 0.96 <= plan.row(0)["drive.load [x]"] <= 1.04
+    assert tornado_plan(study).sampling["in_words"]["drive.ambient"] == "±3 K"
+
+
 def test_a_reduced_model_follows_uncertain_numbers(tyre: Study) -> None:
     """Moved in two regions at once, by full runs and by the model."""
     from tyrefem.reduced.surrogate import why_outside

@@ -17,10 +17,11 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from tyrefem.compare.reduced_inputs import ReducedInputCertificate
+    from tyrefem.inputs.uncertain_numbers import UncertainNumber
 
 
 #: Columns of `ComparisonData.inputs`.
-INPUTS = ("run", "sensor", "phase", "key", "relative_sd", "change_K", "regions")
+INPUTS = ("run", "sensor", "phase", "key", "relative_sd", "sd", "change_K", "regions")
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,7 +36,8 @@ class ComparisonData(Brief):
         readings, ``beyond`` and ``verdict``.
     residuals : one row per reading: ``run, time_s, sensor, phase, measured_degC, computed_degC, error_K`` and
         ``u_val_K``, the standard validation uncertainty of that reading.
-    inputs : one row per run, sensor, phase and uncertain input ``key``: ``relative_sd``, the ``regions`` in which the
+    inputs : one row per run, sensor, phase and uncertain input ``key``: ``relative_sd``, ``sd`` as text, the
+        ``regions`` in which the
         input changes (a number of a card changes in all regions with this card) and ``change_K``, the change of the
         mean when the input is one standard deviation higher.
     curves : run -> computed readings at the saved times (``time_s``, degC).
@@ -166,22 +168,24 @@ def comparison_of(
     *,
     curves: Mapping[str, pd.DataFrame],
     relative_sd: Mapping[str, float],
-    regions: Mapping[str, tuple[str, ...]] | None = None,
+    numbers: Mapping[str, UncertainNumber] | None = None,
     notes: tuple[str, ...] = (),
     k: float = 2.0,
     reduced: ReducedInputCertificate | None = None,
 ) -> ComparisonData:
-    """The comparison of measured and computed histories; ``regions``: input -> regions in which it changes."""
+    """The comparison of measured and computed histories; ``numbers``: the uncertain inputs by name."""
     import pandas as pd
 
     rows, inputs = [], []
-    places = {key: ", ".join(names) for key, names in (regions or {}).items()}
+    places = {key: ", ".join(number.regions) for key, number in (numbers or {}).items()}
+    spreads = {key: f"±{100 * sd:.3g} %" for key, sd in relative_sd.items()}
+    spreads |= {key: number.deviation for key, number in (numbers or {}).items()}
     for history in histories:
         for phase, mask in history.stretches():
             values, changes = row(history, phase, mask, k)
             rows.append(values)
             inputs += [
-                (history.run, history.sensor, phase, key, relative_sd[key], change, places.get(key, ""))
+                (history.run, history.sensor, phase, key, relative_sd[key], spreads[key], change, places.get(key, ""))
                 for key, change in changes.items()
             ]
     residuals = pd.concat(

@@ -111,9 +111,9 @@ def compare(
     if not all_histories:
         raise InputError("no measured time is within the simulated span: " + "; ".join(notes))
     notes += [*model_notes, *columns_note(planned), *_uncertainty_notes(study, planned, judged.inputs)]
-    regions = {number.key: number.regions for number in getattr(study, "uncertain_numbers", ())}
+    numbers = {number.key: number for number in getattr(study, "uncertain_numbers", ())}
     comparison = comparison_of(
-        study.name, all_histories, curves=curves, relative_sd=keys, regions=regions, notes=tuple(notes), k=judged.k,
+        study.name, all_histories, curves=curves, relative_sd=keys, numbers=numbers, notes=tuple(notes), k=judged.k,
         reduced=certificate,
     )  # fmt: skip
     used = plugin_summary(study if isinstance(study, StudyData) else None)["plugins"]

@@ -12,6 +12,7 @@ from tyrefem.errors import InputError
 from tyrefem.inputs.changes import by_places, check_factor, check_used, scaled, value_at
 from tyrefem.inputs.deviations import share_of
 from tyrefem.materials.reads import STIFFNESS, tables_read
+from tyrefem.quantity import amount_parts
 
 if TYPE_CHECKING:
     from tyrefem.inputs.study_card import StudyCard
@@ -68,6 +69,27 @@ class UncertainNumber:
         'materials.ply.cords.modulus (also turn-up)'
         """
         return f"{self.key} (also {', '.join(self.regions[1:])})" if len(self.regions) > 1 else self.key
+
+    @property
+    def kelvins(self) -> float:
+        """A temperature, K, of which a share means nothing; 0: another number.
+
+        >>> UncertainNumber("drive.ambient", ("drive.ambient",), ("298.15 K",), 0.01).kelvins
+        298.15
+        """
+        amount, unit = amount_parts(self.written[0] if self.written else "") or ("", "")
+        return float(amount) if unit in ("K", "kelvin") else 0.0
+
+    @property
+    def deviation(self) -> str:
+        """One standard deviation as text: a share, of a temperature kelvins.
+
+        >>> UncertainNumber("drive.ambient", ("drive.ambient",), ("298.15 K",), 0.01).deviation
+        '±2.98 K'
+        >>> UncertainNumber("drive.load", ("drive.load",), ("2 kN",), 0.05).deviation
+        '±5 %'
+        """
+        return f"±{self.sd * self.kelvins:.3g} K" if self.kelvins else f"±{100 * self.sd:.3g} %"
 
 
 class StudyOfCards(Protocol):

@@ -227,11 +227,11 @@ def page(comparison: ComparisonData, images: Mapping[str, bytes]) -> str:
     records = comparison.table.to_dict(orient="records")
     embedded = {name: base64.b64encode(png).decode("ascii") for name, png in images.items()}
     whole = [record for record in records if record["phase"] == ALL]
-    relative_sd = dict(zip(comparison.inputs["key"], comparison.inputs["relative_sd"], strict=True))
+    spreads = dict(zip(comparison.inputs["key"], comparison.inputs["sd"], strict=True))
     regions = {
         key: ", ".join(names.split(", ")[1:])
         for key, names in zip(comparison.inputs["key"], comparison.inputs["regions"], strict=True)
     }
     return environment.get_template("comparison.html").render(
-        comparison=comparison, whole=whole, records=records, relative_sd=relative_sd, regions=regions, pictures=embedded
+        comparison=comparison, whole=whole, records=records, spreads=spreads, regions=regions, pictures=embedded
     )

@@ -136,6 +136,7 @@ ROWS: dict[str, Keys] = {
     "compare.inputs[]": {
         "run": "text: Measured run.", "sensor": "text: Sensor.", "phase": "text: Phase, or all.",
         "key": "text: Dotted name of the input.", "relative_sd": "number: Its relative standard deviation.",
+        "sd": "text: The same as people read it: a share, of a temperature kelvins.",
         "change_K": "number: Change of the mean deviation by one standard deviation.",
         "regions": "text: Regions that have it.",
     },

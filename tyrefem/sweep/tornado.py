@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
 from tyrefem.inputs.uncertain_numbers import UncertainNumber, left_out, uncertain_number
-from tyrefem.quantity import amount_parts
 from tyrefem.sweep.question import SweepQuestion
 from tyrefem.sweep.responses import judged
 from tyrefem.sweep.sweep import Sweep, sweep
@@ -79,19 +78,11 @@ def tornado_plan(
         "count": len(variants),
         "seed": None,
         "tolerances": {number.key: number.sd for number in numbers},
-        "in_words": {number.key: _in_words(number) for number in numbers},
+        "in_words": {number.key: number.deviation for number in numbers},
         "also": {number.key: list(number.regions[1:]) for number in numbers if len(number.regions) > 1},
         "left_out": [] if given else left_out(study.uncertain_numbers),
     }
     return Plan(study, (), tuple(variants), tuple(names), {}, time_to, sampling)
-
-
-def _in_words(number: UncertainNumber) -> str:
-    """A tolerance as text: a share, or of a temperature kelvins, as a share of it means nothing."""
-    amounts = [amount_parts(value) for value in number.written]
-    if amounts and amounts[0] is not None and amounts[0][1] == "K":
-        return f"±{number.sd * float(amounts[0][0]):.3g} K"
-    return f"±{100 * number.sd:.3g} %"
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,12 +12,13 @@ import numpy as np
 from tyrefem.errors import InputError
 from tyrefem.inputs.changes import check_factor, scaled, value_at
 from tyrefem.inputs.name_patterns import number_at
-from tyrefem.quantity import amount_parts, parse
+from tyrefem.quantity import KELVIN, amount_parts, parse
 from tyrefem.variants.card import VaryCard
 from tyrefem.variants.links import Links, Members, members
 
 if TYPE_CHECKING:
     from tyrefem.inputs.study import StudyData
+    from tyrefem.inputs.uncertain_numbers import UncertainNumber
 
 #: Significant digits of written values, so that a variant can be typed again.
 DIGITS = 9
@@ -251,10 +252,21 @@ def uncertain(study: StudyData, deviations: float) -> list[Varied]:
             raise InputError(message, field="uncertain")
         pairs = zip(number.keys, number.written, strict=True)
         (key, nominal), *also = pairs
-        varied_numbers.append(Varied(key, "", (), 1 - reach, 1 + reach, nominal=nominal, also=tuple(also)))
+        if number.kelvins:
+            varied_numbers.append(_temperature(study, number, reach))
+        else:
+            varied_numbers.append(Varied(key, "", (), 1 - reach, 1 + reach, nominal=nominal, also=tuple(also)))
     if not varied_numbers:
         raise InputError("neither cards (relative_sd) nor [uncertainty] state a standard deviation", field="uncertain")
     return varied_numbers
+
+
+def _temperature(study: StudyData, number: UncertainNumber, reach: float) -> Varied:
+    """An uncertain temperature by its values, in degC unless the study has it in K: a factor of it means nothing."""
+    _, unit = amount_parts(number_at(study.data, number.key, study.folder)) or ("", "")
+    zero, unit = (0.0, "K") if unit in ("K", "kelvin") else (KELVIN, "degC")
+    low, high = ((1 + sign * reach) * number.kelvins - zero for sign in (-1, 1))
+    return Varied(number.key, unit, (), low, high, same=tuple((key, 1.0) for key in number.keys[1:]))
 
 
 def _listed(key: str, values: list[Any]) -> Varied:

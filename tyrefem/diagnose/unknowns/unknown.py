@@ -14,7 +14,6 @@ from tyrefem.effects.sensor_misplaced import SensorMisplaced
 from tyrefem.inputs.changes import scaled
 from tyrefem.inputs.name_patterns import number_at
 from tyrefem.inputs.study import StudyData
-from tyrefem.inputs.uncertain_numbers import UncertainNumber
 from tyrefem.quantity import parse
 
 Choice = tuple[tuple[str, str], ...]
@@ -165,7 +164,7 @@ def of_effect(
 def base_unknowns(study: StudyData) -> tuple[Unknown, ...]:
     """The uncertain base numbers: relevant numbers of the study, film coefficients, and uncertain values of effects."""
     numbers = tuple(
-        Unknown(number.key, number.sd, keys=number.keys, kelvins=_kelvins(number))
+        Unknown(number.key, number.sd, keys=number.keys, kelvins=number.kelvins)
         for number in study.uncertain_numbers
         if not number.idle
     )
@@ -183,13 +182,6 @@ def base_unknowns(study: StudyData) -> tuple[Unknown, ...]:
         if unknown.parameter is not None and unknown.parameter.name in effect.sd
     ]
     return (*numbers, *films, *(unknown for unknown in fitted if unknown.sd > 0))
-
-
-def _kelvins(number: UncertainNumber) -> float:
-    """A temperature, K; 0 for another number."""
-    written = number.written[0] if number.written else ""
-    amount, _, unit = written.partition(" ") if isinstance(written, str) else ("", "", "")
-    return float(amount) if unit in ("K", "kelvin") else 0.0
 
 
 def _stated(study: StudyData, name: str, choice: Choice) -> Effect | None:
