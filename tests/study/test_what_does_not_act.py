@@ -9,6 +9,7 @@ import pytest
 import tyrefem as tf
 from tyrefem.errors import InputError
 from tyrefem.mechanics.rolling.critical_speed import ring_speed
+from tyrefem.sizes import draw_size
 
 pytestmark = pytest.mark.fast
 
@@ -62,3 +63,20 @@ def test_the_deflection_of_a_leak_is_the_load_laws_beside_finite_elements(effect
     assert warning.message.endswith("the strain law is 'fem'")
     with pytest.raises(InputError, match=r"'vertical-stiffness' does not depend on pressure; beside a strain law that"):
         tf.study("passenger-205-55r16", {"effects": [effect]})
+
+
+def test_a_factor_that_acts_on_a_part_of_a_region_is_told_with_the_number_that_acts_on_all() -> None:
+    """The body plies of a radial have half of the factor; tread and belts all of it."""
+    plain = tf.study("passenger-205-55r16")
+    scales = {f"section.thickness_scale.{region}": 1.1 for region in ("body-ply", "tread", "belt-1")}
+    (warning,) = plain.replace(scales).warnings
+    assert warning.field == "section.parameters.thickness_scale.body-ply"
+    assert "changes the area of 'body-ply' by +5.2 %, not by +10 %" in warning.message
+    assert "in its place" not in warning.message
+    of_size = plain.replace({"section": "205/55R16 91V", "made_for": "205/55R16 91V", **scales})
+    (warning,) = of_size.warnings
+    assert warning.message.endswith("give the size's number parameters.ply_gauge in its place")
+    gauge = draw_size("205/55R16 91V").rules["ply_gauge"].value
+    thicker = plain.replace({"section": {"size": "205/55R16 91V", "parameters": {"ply_gauge": f"{1100 * gauge} mm"}}})
+    assert thicker.section.area("body-ply") == pytest.approx(1.1 * plain.section.area("body-ply"), rel=0.002)
+    assert not plain.replace({"section.thickness_scale.body-ply": 1.0}).warnings

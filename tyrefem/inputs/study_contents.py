@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import InitVar, dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tyrefem.brief import Brief
 from tyrefem.errors import InputError, InputWarning
+from tyrefem.inputs.scale_warnings import scale_warnings
 from tyrefem.inputs.sensor_places import sensor_place
 from tyrefem.inputs.study_card import MeasuredEntry, Sensor, StudyCard
 from tyrefem.inputs.study_effects import check_effects
@@ -143,8 +144,12 @@ class StudyContents(Brief):
         cautions = ((effect, effect.caution(self)) for effect in self.effects)
         return (
             *study_warnings(self.card, self.new_section, self.materials, self.file),
+            *(warning.within(file=self.file) for warning in self._scale_warnings()),
             *(InputWarning(words, f"effects.{effect.name}", self.file) for effect, words in cautions if words),
         )
+
+    def _scale_warnings(self) -> Iterator[InputWarning]:
+        return scale_warnings(self.parts.section_card, self.new_section, self.data["section"])
 
     @property
     def title(self) -> str:

@@ -5,7 +5,15 @@ Knows no meshes and no studies: it gives the plain data of a section's file and 
 
 from tyrefem.sizes.designation import TyreSize, looks_like_size, parse_size
 from tyrefem.sizes.drawn import Drawn
-from tyrefem.sizes.section import completed_materials, draw_size, drawn_of, is_size, section_of_size, with_numbers
+from tyrefem.sizes.section import (
+    completed_materials,
+    draw_size,
+    drawn_of,
+    gauge_of,
+    is_size,
+    section_of_size,
+    with_numbers,
+)
 
 __all__ = [
     "Drawn",
@@ -13,6 +21,7 @@ __all__ = [
     "completed_materials",
     "draw_size",
     "drawn_of",
+    "gauge_of",
     "is_size",
     "looks_like_size",
     "parse_size",

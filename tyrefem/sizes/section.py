@@ -19,6 +19,9 @@ NUMBERS = ("rim_width", "load", "pressure")
 _OF_FILE = ("thickness_scale", "inner_volume")
 #: Tables of a section's file that may be laid over.
 _OVER = ("title", "layers", "grooves", "pattern", "wrap", "boundaries", "rating")
+#: Regions whose gauge does not have their name, and regions whose gauge is that of one place only.
+_GAUGES = {"bead": "bead_width", "sidewall": "", "chafer": "", "tread": ""}
+_GAUGES |= dict.fromkeys(("body-ply", "body-plies", "turn-up", "bead-wrap", "carcass"), "ply_gauge")
 _drawn: Cache[Drawn] = Cache(64)
 
 
@@ -80,6 +83,16 @@ def section_of_size(reference: Mapping[str, Any] | str) -> tuple[dict[str, Any],
         if kept:
             over["parameters"] = kept
     return dict(drawn.data), over
+
+
+def gauge_of(reference: Mapping[str, Any] | str, region: str) -> str:
+    """The number of a size's rules that is the thickness of a whole region; empty: none.
+
+    >>> gauge_of("205/60R15", "turn-up"), gauge_of("205/60R15", "belt-1"), gauge_of("205/60R15", "shoulder-cushion")
+    ('ply_gauge', 'belt_1_gauge', '')
+    """
+    name = _GAUGES.get(region, f"{region.replace('-', '_')}_gauge")
+    return name if name in drawn_of(reference).rules.numbers else ""
 
 
 def with_numbers(section: object, data: Mapping[str, Any]) -> dict[str, Any]:
