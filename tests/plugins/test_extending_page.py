@@ -99,6 +99,82 @@ def test_the_sweep_of_the_page_has_its_answer(write: Write, tmp_path: Path) -> N
     assert [entry["name"] for entry in summary["plugins"]] == ["highest"]
 
 
+#: Replaces the template's `rows`.
+ROWS = "return ordered.head(self.settings.most).reset_index(drop=True)"
+#: Replaces its `sentences`.
+SENTENCES = "highest = rows.iloc[0]"
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ((ROWS, "return ordered.hottest_degC"), "rows: must give a pandas DataFrame, not Series"),
+        ((ROWS, "return ordered.assign(mixed=[1.0, 'two'])"), "rows: column 'mixed' must have numbers only or texts"),
+        ((ROWS, "return ordered.assign(phase=[1j, 2j])"), "rows: column 'phase' must have numbers only or texts"),
+        ((ROWS, "return ordered.rename(columns={'by': 0})"), "rows: columns must be named by text, not 0"),
+        ((ROWS, "return ordered.rename(columns={'by': 'failure'})"), "rows: has two columns 'failure'"),
+        ((ROWS, "raise SystemExit(3)"), "rows: SystemExit: 3"),
+        ((SENTENCES, "return 'the highest'"), "sentences: must give a list of texts, not 'the highest'"),
+        ((SENTENCES, "return None"), "sentences: must give a list of texts, not None"),
+    ],
+)
+def test_an_answer_that_cannot_be_written_names_file_class_and_column(
+    write: Write, change: tuple[str, str], words: str
+) -> None:
+    file = write("sweep-answer", change)
+    design = tf.study("nasa-22x5.5-8pr", COARSE).sweep(
+        {"drive.speed": ["10 mph", "20 mph"]}, reduced="never", highest={}
+    )
+    with pytest.raises(tf.InputError) as error:
+        _ = design.answers["highest"].words
+    assert str(error.value).startswith(f"{file}: class Highest, ")
+    assert words in str(error.value)
+
+
+def test_a_named_index_of_an_answer_becomes_a_column(write: Write) -> None:
+    speeds = "ordered.groupby('drive.speed [mph]')[['hottest_degC', 'variant']].max()"
+    write("sweep-answer", (ROWS, f"return {speeds}"), (SENTENCES, "highest = rows.loc[20.0]"))
+    design = tf.study("nasa-22x5.5-8pr", COARSE).sweep(
+        {"drive.speed": ["10 mph", "20 mph"]}, reduced="never", highest={}
+    )
+    answer = design.answers["highest"]
+    assert list(answer.table["drive.speed [mph]"]) == [10.0, 20.0]
+    assert answer.to_dict()["rows"][1]["drive.speed [mph]"] == 20.0
+    assert "in variant 2" in answer.words[0]
+
+
+def test_an_edited_answer_takes_up_the_finished_variants(write: Write, folder: Path, tmp_path: Path) -> None:
+    """A sweep of days does not run again because its user's answer failed: no variant depends on it."""
+    from tyrefem.plugins import use
+
+    write("sweep-answer", (ROWS, "raise ValueError('wrong')"))
+    study, speeds = tf.study("nasa-22x5.5-8pr", COARSE), {"drive.speed": ["10 mph", "20 mph"]}
+    design = study.sweep(speeds, reduced="never", folder=tmp_path / "kept", highest={})
+    with pytest.raises(tf.InputError, match="wrong"):
+        _ = design.answers["highest"].table
+    write("sweep-answer")
+    use(folder)
+    design = study.sweep(speeds, reduced="never", folder=tmp_path / "kept", highest={})
+    assert design.swept is not None
+    assert design.swept.resumed == 2
+    assert len(design.answers["highest"].table) == 2
+    # A law of the same file takes part in the variants.
+    file = write("tan-delta-law")
+    both = file.read_text(encoding="utf-8") + (folder / "highest.py").read_text(encoding="utf-8")
+    file.write_text(both, encoding="utf-8")
+    (folder / "highest.py").unlink()
+    use(folder)
+    with pytest.raises(tf.InputError, match=r"another sweep \(another study, version, plugin or plan\)"):
+        study.sweep(speeds, reduced="never", folder=tmp_path / "kept", highest={})
+
+
+@pytest.mark.parametrize("key", ["indices", "mesh", "words", "scheduler", "sample"])
+def test_an_answer_does_not_take_a_name_of_the_summary_or_of_an_option(write: Write, key: str) -> None:
+    write("sweep-answer", ('key: ClassVar[str] = "highest"', f'key: ClassVar[str] = "{key}"'))
+    with pytest.warns(tf.errors.PluginWarning, match=f"'{key}': has the name of another table, file or option"):
+        assert registry().plugins == ()
+
+
 def test_a_broken_contract_is_said_in_words(write: Write) -> None:
     file = write("tan-delta-law", ("np.exp(self.activation", "np.mean(temperature) * np.exp(self.activation"))
     (_, contracts) = check_file(file).plugins[0]

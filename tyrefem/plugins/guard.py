@@ -45,7 +45,7 @@ def guarded(function: Callable[..., Any], place: str, origin: Origin) -> Callabl
             return function(*args, **named)
         except (InputError, MemoryError):
             raise
-        except Exception as error:
+        except (Exception, SystemExit) as error:
             raise plugin_error(origin, place, failure_words(error, function.__code__.co_filename)) from error
 
     setattr(call, _MARK, True)

@@ -15,6 +15,10 @@ def _no_complaint(cls: type) -> str | None:
     return None
 
 
+def _takes_part(cls: type) -> bool:
+    return True
+
+
 def _nothing(cls: type, origin: Origin) -> None:
     pass
 
@@ -29,6 +33,8 @@ class Kind:
     name_of : class -> its name, by which files refer to it; empty for a class that only helps others.
     shipped : the classes of this package by name; called only when there is a plugin of this kind.
     complaint : what else is wrong with a class, or None. prepare : called with a class that is accepted.
+    computes : does a class take part in a computation? If not, it reads finished answers only, and those that are kept
+        hold after an edit of it.
     """
 
     name: str
@@ -38,6 +44,7 @@ class Kind:
     shipped: Callable[[], Mapping[str, type]]
     complaint: Callable[[type], str | None] = _no_complaint
     prepare: Callable[[type, Origin], None] = _nothing
+    computes: Callable[[type], bool] = _takes_part
 
     @property
     def key(self) -> str:

@@ -23,20 +23,24 @@ class Sent:
     Parameters
     ----------
     files : name of a file -> its content. packages : entry point -> package, version and digest.
+    readers : files and entry points that only read finished answers: no computed number depends on them.
     """
 
     files: Mapping[str, bytes] = field(default_factory=dict)
     packages: Mapping[str, tuple[str, str, str]] = field(default_factory=dict)
+    readers: frozenset[str] = frozenset()
 
     @property
     def digest(self) -> str:
-        """Digest of the files and packages; empty without any."""
-        if not self.files and not self.packages:
+        """Digest of the files and packages on which computed numbers depend; empty without any."""
+        files = sorted(name for name in self.files if name not in self.readers)
+        packages = sorted(entry for entry in self.packages.items() if entry[0] not in self.readers)
+        if not files and not packages:
             return ""
         digest = hashlib.sha256()
-        for name in sorted(self.files):
+        for name in files:
             digest.update(hashlib.sha256(self.files[name]).digest())
-        digest.update(repr(sorted(self.packages.items())).encode())
+        digest.update(repr(packages).encode())
         return digest.hexdigest()
 
     @property
@@ -68,17 +72,23 @@ def sent() -> Sent:
     """The plugins of this process: files by content, packages by version."""
     loaded = registry()
     used = {plugin.origin for plugin in loaded.plugins}
+    computing = {plugin.origin for plugin in loaded.plugins if plugin.kind.computes(plugin.cls)}
     files: dict[str, bytes] = {}
     packages: dict[str, tuple[str, str, str]] = {}
+    readers: set[str] = set()
     for module in loaded.modules:
         origin = module.origin
         if origin not in used:
             continue
         if origin.file is None:
-            packages[origin.entry] = (origin.package, origin.version, origin.sha256)
+            name = origin.entry
+            packages[name] = (origin.package, origin.version, origin.sha256)
         else:
-            files[f"{origin.sha256[:12]}/{origin.file.name}"] = module.content
-    return Sent(files, packages)
+            name = f"{origin.sha256[:12]}/{origin.file.name}"
+            files[name] = module.content
+        if origin not in computing:
+            readers.add(name)
+    return Sent(files, packages, frozenset(readers))
 
 
 _receiving = threading.Lock()

@@ -8,6 +8,7 @@ import pkgutil
 import re
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
+from dataclasses import fields
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -41,6 +42,8 @@ class SweepQuestion(ABC):
     table: ClassVar[type[Card]] = Card
     #: Position among the answers.
     place: ClassVar[int] = 9
+    #: Does it run variants of its choice? If not, kept variants hold after an edit of it.
+    runs_variants: ClassVar[bool] = True
 
     @abstractmethod
     def __init__(self, study: StudyData, table: Any, card: SweepCard) -> None: ...
@@ -73,7 +76,7 @@ def _complaint(cls: type) -> str | None:
     """What is wrong with a user's question, beside its methods."""
     key, table = str(getattr(cls, "key", "")), getattr(cls, "table", None)
     if key in SweepCard.model_fields or key in RESERVED:
-        return "has the name of another table or file of a sweep: rename it"
+        return "has the name of another table, file or option of a sweep: rename it"
     if not re.fullmatch(r"[a-z][a-z0-9-]*", key):
         return "its key must be of small letters, digits and -, as it names files"
     if not (isinstance(table, type) and issubclass(table, Card)):
@@ -81,8 +84,12 @@ def _complaint(cls: type) -> str | None:
     return None
 
 
-#: Names of files and folders of a sweep that no question may have.
-RESERVED = ("sweep", "errors", "summary", "pictures", "optimum")
+#: Names that no question may have: of files and folders of a sweep, keys of its summary, keywords of ``study.sweep``.
+RESERVED = (
+    *("sweep", "errors", "summary", "pictures", "optimum", "indices", "variants"),
+    *("complete", "asked", "failures", "mesh", "versions", "plugins", "input", "words", "files", "command"),
+    *("checksums", "writing", *(each.name for each in fields(Execution))),
+)
 KIND = SweepQuestion.plugin_kind = Kind(
     "sweep answer",
     "sweep answers",
@@ -90,6 +97,7 @@ KIND = SweepQuestion.plugin_kind = Kind(
     lambda cls: str(getattr(cls, "key", "")),
     shipped_questions,
     _complaint,
+    computes=lambda cls: bool(getattr(cls, "runs_variants", True)),
 )
 
 

@@ -182,8 +182,8 @@ class Store:
             raise self._unreadable()
         if entry.get("plan") != self.digest:
             raise InputError(
-                "holds the variants of another sweep (another study, version or plan); choose another folder with"
-                " --out, or delete them with --restart",
+                "holds the variants of another sweep (another study, version, plugin or plan); choose another folder"
+                " with --out, or delete them with --restart",
                 file=self.path,
             )
 
