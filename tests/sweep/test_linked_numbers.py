@@ -135,6 +135,13 @@ def test_uncertain_numbers_of_a_link_vary_once(tyre: Study) -> None:
         ),
         ({"a": (1, 2)}, {"a": ["section.thicknes_scale.*"]}, "did you mean 'section.thickness_scale'"),
         ({"section": (1, 2)}, {"section": ["drive.load"]}, "'section' is a table of the study"),
+        ({"by": ["nasa-tread"]}, {"by": ["materials.tread"]}, "link: 'by' is a column of the sweep's table"),
+        ({"mass_kg": (1, 2)}, {"mass_kg": ["drive.load"]}, "'mass_kg' is a column of the sweep's table"),
+        (
+            {"a": ("10 degC", "20 degC")},
+            {"a": ["drive.ambient", "0.5*drive.road_temperature"]},
+            "link.a: drive.road_temperature: '10 degC' is a temperature: a share of it means nothing",
+        ),
         ({"a": (1, 2)}, {"a": []}, "link.a: must be a list of dotted names"),
         ({"a": (1, 2)}, {"a": "drive.load"}, "link.a: must be a list of dotted names"),
         ({"a": (1, 2)}, {"a.b": ["drive.load"]}, "'a.b' is no name of a link"),

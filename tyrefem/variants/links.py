@@ -15,12 +15,15 @@ from typing import TYPE_CHECKING
 from tyrefem.errors import InputError, nearest
 from tyrefem.inputs.changes import canonical
 from tyrefem.inputs.name_patterns import matching
+from tyrefem.variants.answers import answer_names
 
 if TYPE_CHECKING:
     from tyrefem.inputs.study import StudyData
 
 _SHARE = re.compile(r"^\s*(?:(-)|([-+]?(?:\d+\.?\d*|\.\d+))\s*\*)?\s*([^\s*-].*?)\s*$")
 Links = Mapping[str, Sequence[str]]
+#: Columns of a sweep's table and of a list of variants, beside numbers and answers that are numbers.
+COLUMNS = ("variant", "name", "note", "hottest_region", "life_region", "by", "error_K", "feasible", "failure")
 
 
 @dataclass(frozen=True)
@@ -113,9 +116,12 @@ def _check_known(study: StudyData, name: str, links: Iterable[str]) -> None:
 
 
 def check_links(study: StudyData, links: Links, used: Iterable[str]) -> None:
-    """Raise `InputError` for a link that nothing uses, or that has the name of a table of the study."""
+    """Raise `InputError` for a link that nothing uses, or that has the name of a table of the study or of a column."""
     used = set(used)
+    columns = {*COLUMNS, *answer_names(study, 0.0)}
     for name in links:
+        if name in columns:
+            raise InputError(f"'{name}' is a column of the sweep's table: give the link another name", field="link")
         if name in type(study.card).model_fields:
             raise InputError(f"'{name}' is a table of the study: give the link another name", field="link")
         if name not in used:

@@ -71,7 +71,7 @@ class Varied:
         {'belt-1.angle': '24 deg', 'belt-2.angle': '-24 deg'}
         """
         if self.same:
-            return {self.key: value, **{key: _times(value, share) for key, share in self.same}}
+            return {self.key: value, **{key: self._shared(value, key, share) for key, share in self.same}}
         if not self.also:
             return {self.key: value}
         factor = _ratio(value, self.nominal)
@@ -121,6 +121,13 @@ class Varied:
         if self.values:
             return self.values[min(int(place * len(self.values)), len(self.values) - 1)]
         return self.written(self.number(place))
+
+    def _shared(self, value: Any, key: str, share: float) -> Any:
+        """A number's share of the value of its link."""
+        try:
+            return _times(value, share)
+        except InputError as error:
+            raise InputError(f"{key}: {error.message}", field=f"link.{self.label}") from None
 
     def written(self, number: float) -> Any:
         """A number of this quantity, as in a study file."""
