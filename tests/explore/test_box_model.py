@@ -13,6 +13,7 @@ import tyrefem
 from tyrefem.api import Exploration, Study
 from tyrefem.errors import InputError
 from tyrefem.realtime.box_certificate import differences, is_temperature
+from tyrefem.realtime.box_model import limited_answers
 from tyrefem.realtime.box_runs import FullHistory, SettingTask, perform_history
 from tyrefem.realtime.default_box import default_box
 from tyrefem.realtime.drive_inputs import drive_inputs, inputs_of
@@ -21,6 +22,7 @@ from tyrefem.realtime.inputs import NAMES
 from tyrefem.realtime.setting_tyre import step_lengths
 from tyrefem.realtime.tyre import Inputs, RealTimeTyre
 from tyrefem.reports.explore_data import changes_of_file
+from tyrefem.variants.answers import answer_names
 from tyrefem.variants.plan import plan_of
 from tyrefem.variants.samples import changes_at
 
@@ -139,6 +141,12 @@ def test_default_box_holds_the_study_and_its_measured_runs(small: Study) -> None
     assert ranges["load"][0] < 2500 * 4.448 < 2700 * 4.448 < ranges["load"][1]
 
 
+def test_limits_are_of_answers_that_a_page_computes(explored: Exploration) -> None:
+    start = [number.number(0.5) for number in explored.plan.varied]
+    computed = set(explored.solve(start).answers)
+    assert set(limited_answers(explored.plan.study)) == computed & set(answer_names(explored.plan.study))
+
+
 @pytest.mark.parametrize(
     ("vary", "options", "message"),
     [
@@ -157,6 +165,11 @@ def test_default_box_holds_the_study_and_its_measured_runs(small: Study) -> None
         ({"drive.speed": ("10 mph", "20 mph")}, {"axes": "drive.speed"}, "axes: must be two different numbers"),
         ({"drive.speed": ("10 mph", "20 mph")}, {"tolerance": 1e-4}, "numerics.tolerance"),
         ({"drive.speed": ("10 mph", "20 mph")}, {"limits": {"hotest_degC": {"below": 1}}}, "hottest_degC"),
+        (
+            {"drive.speed": ("10 mph", "20 mph")},
+            {"limits": {"mass_kg": {"below": 9}}},
+            "limits: 'mass_kg' is an answer of a sweep only, a page does not compute it; allowed: hottest_degC, ",
+        ),
     ],
 )
 def test_what_cannot_be_explored_is_refused(small: Study, vary: dict, options: dict, message: str) -> None:

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.boundaries.rim import LumpedRim
 from tyrefem.brief import Brief
 from tyrefem.errors import InputError, nearest
 from tyrefem.estimates.work import warn_if_long
@@ -33,6 +34,7 @@ from tyrefem.reduced.training import ReducedFineness, trained
 from tyrefem.reduced.training_rounds import Training
 from tyrefem.requirements import Requirements
 from tyrefem.simulation.estimate import RunEstimate
+from tyrefem.variants.answers import highest_name
 from tyrefem.variants.card import flat
 from tyrefem.variants.plan import Plan, plan_of
 from tyrefem.variants.samples import changes_at
@@ -268,12 +270,34 @@ def check_explored(plan: Plan, tolerance: float) -> None:
         if table in ("section", "mesh", "output", "numerics", "mechanics"):
             raise InputError(f"has no slider: it needs another mesh or other strain cycles. {POSSIBLE}", field=field)
     check_varied(plan)
+    known = limited_answers(plan.study)
+    for name in plan.limits:
+        if name not in known:
+            words = f"'{name}' is an answer of a sweep only, a page does not compute it; allowed: {', '.join(known)}"
+            raise InputError(words, field="limits")
     if tolerance < plan.study.tolerance:
         raise InputError(
             f"{tolerance:g} K is less than the time error of the full runs; must be at least numerics.tolerance, "
             f"{plan.study.tolerance:g} K",
             field="tolerance",
         )
+
+
+def limited_answers(study: StudyData) -> list[str]:
+    """Names of the answers that a limit may have: those of `SettingSolution.answers`.
+
+    >>> import tyrefem
+    >>> limited_answers(tyrefem.study("nasa-22x5.5-8pr"))[:3]
+    ['hottest_degC', 'carcass_max_degC', 'bead_max_degC']
+    """
+    regions = study.section.regions
+    return [
+        "hottest_degC",
+        *(f"{region}_max_degC" for region in regions),
+        *(name for sensor in study.sensors for name in (f"{sensor}_degC", highest_name(sensor, regions))),
+        *(["rim_degC"] if isinstance(study.card.boundaries.rim, LumpedRim) else []),
+        *("contained-air_degC", "gas_pressure_Pa", "rolling_resistance_N", "rolling_resistance_coefficient"),
+    ]
 
 
 def check_cost(study: StudyData, scheduler: Scheduler) -> None:
