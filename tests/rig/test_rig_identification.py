@@ -96,3 +96,33 @@ def test_unknown_absorbed_power_is_unknown_scale() -> None:
     names = [estimate.name for estimate in doubtful.estimates]
     pair = names.index("tread.conductivity"), names.index("absorptance")
     assert doubtful.correlation[pair] > 0.9
+
+
+def late(card: RigCard, seconds: float) -> Identification:
+    """Readings of a laser that is switched on later than the card says, identified with the card."""
+    (name,) = card.runs
+    return of_itself(card, {f"{name}.clock": seconds}, linear=False)
+
+
+def test_a_late_clock_is_no_property_of_the_tyre() -> None:
+    """A clock that is off makes every property doubtful, first of all words; with a standard deviation it is fitted."""
+    wrong = late(rig(heating=150.0, cooling=0.0), 10.0)
+    assert {estimate.verdict for estimate in wrong.properties} <= {"doubtful", "not determined"}
+    assert "doubtful" in {estimate.verdict for estimate in wrong.properties}
+    assert wrong.words[0].startswith("DOUBTFUL: the model does not describe the readings of outer")
+    assert "clock_sd" in wrong.words[1]
+    assert not any("determine all" in words for words in wrong.words)
+    right = late(rig(heating=150.0, cooling=0.0, clock_sd=5.0), 10.0)
+    assert right.by_name["high.clock"].value == pytest.approx(10.0, abs=0.1)
+    for name, value in (("tread.conductivity", 0.25), ("tread.specific_heat", 1700.0)):
+        assert right.by_name[name].holds(value)
+    assert not any("DOUBTFUL" in words for words in right.words)
+
+
+def test_a_number_far_from_the_card_is_named() -> None:
+    """An offset of 2 K where the card says 0.1 K changes no property, but somebody should look at the camera."""
+    identification = of_itself(rig(heating=150.0, cooling=0.0), {"outer.offset": 2.0}, linear=False)
+    assert identification.by_name["tread.conductivity"].holds(0.25)
+    (words,) = (words for words in identification.words if words.startswith("Unusual"))
+    assert "offset of outer is" in words
+    assert "standard deviations from the card's 0" in words

@@ -125,11 +125,12 @@ class PatchCard(Card):
 
 
 class HeatingPhases(Card):
-    """Laser off, on, off."""
+    """Laser off, on, off. ``clock_sd``: standard deviation of a table's clock against the laser's switch, per run."""
 
     idle: Annotated[float, Unit("s", ge=0, le=1e5)]
     heating: Annotated[float, Unit("s", gt=0, le=1e5)]
     cooling: Annotated[float, Unit("s", ge=0, le=1e5)]
+    clock_sd: Annotated[float, Unit("s", ge=0, le=600)] = 0.0
 
     @property
     def end(self) -> float:

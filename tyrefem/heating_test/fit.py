@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
 from tyrefem.heating_test.noise import Block, Noise, Normal, estimated, log_evidence, normal
-from tyrefem.heating_test.parameters import Parameters
+from tyrefem.heating_test.parameters import Parameters, clock_of
 from tyrefem.heating_test.readings import HeatingTest
 from tyrefem.heating_test.twin import Twin
 
@@ -73,20 +73,28 @@ class Fitter:
         blocks = []
         for test, (fields, seen) in zip(self.tests, predicted, strict=True):
             slopes = self.twin.slopes(parameters, x, test.run, test.clock, fields, seen)
+            late = parameters.values(x).get(clock_of(test.name), 0.0)
             for series in test.series:
                 column = self.twin.sensors.index(series.sensor)
-                computed = series.matrix @ seen[:, column]
-                rise = np.maximum(series.matrix @ (seen[:, column] - seen[0, column]), 0.0)
-                blocks.append(Block(series, computed, series.matrix @ slopes[:, column], rise))
+                matrix = series.at(late)
+                rise = np.maximum(matrix @ (seen[:, column] - seen[0, column]), 0.0)
+                along = matrix @ slopes[:, column]
+                if clock_of(test.name) in parameters.names:
+                    place = parameters.names.index(clock_of(test.name))
+                    along[:, place] = series.clock_slope(late) @ seen[:, column] * parameters.free[place].spread
+                blocks.append(Block(series, matrix @ seen[:, column], along, rise))
         return tuple(blocks)
 
-    def _cost(self, predicted: list[tuple[Array, Array]], x: Array, factors: list[Array]) -> float:
+    def _cost(
+        self, parameters: Parameters, predicted: list[tuple[Array, Array]], x: Array, factors: list[Array]
+    ) -> float:
         from scipy.linalg import solve_triangular
 
         total, k = float(x @ x), 0
         for test, (_, seen) in zip(self.tests, predicted, strict=True):
+            late = parameters.values(x).get(clock_of(test.name), 0.0)
             for series in test.series:
-                r = series.readings - series.matrix @ seen[:, self.twin.sensors.index(series.sensor)]
+                r = series.readings - series.at(late) @ seen[:, self.twin.sensors.index(series.sensor)]
                 white = solve_triangular(factors[k], r, lower=True, check_finite=False)
                 total, k = total + float(white @ white), k + 1
         return total
@@ -125,12 +133,12 @@ class Fitter:
     ) -> tuple[Array, list[tuple[Array, Array]], float]:
         """Make a step that lowers the cost; return also the damping for the next step."""
         factors = [noise.factor(block.series, block.rise) for block in blocks]
-        before = self._cost(predicted, x, factors)
+        before = self._cost(parameters, predicted, x, factors)
         for _ in range(6):
             H = np.eye(x.size) + eq.matrix + damping * np.diag(np.diag(eq.matrix))
             step = _bounded(H, eq.right - x)
             trial = self.predict(parameters, x + step)
-            if self._cost(trial, x + step, factors) < before + 1e-3:
+            if self._cost(parameters, trial, x + step, factors) < before + 1e-3:
                 return x + step, trial, damping / 10 if damping > 1e-3 else 0.0
             damping = max(10 * damping, 0.1)
         return x, predicted, damping

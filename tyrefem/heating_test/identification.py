@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,7 +16,7 @@ from tyrefem.heating_test.card import RigCard, load
 from tyrefem.heating_test.card import tables as beside
 from tyrefem.heating_test.fit import Fitter, RigFit
 from tyrefem.heating_test.grid import USUAL, Fineness
-from tyrefem.heating_test.noise import Noise, estimated, normal
+from tyrefem.heating_test.noise import Noise, estimated, missed, normal
 from tyrefem.heating_test.parameters import PROPERTY, RIG, SLOPE, Parameters, parameters_of
 from tyrefem.heating_test.readings import HeatingTest, read
 from tyrefem.heating_test.selection import ParameterEstimate, Selection, estimate_of, select
@@ -116,7 +116,7 @@ def identify(
 def _identified(card: RigCard, file: Path | None, fitter: Fitter, linear: bool) -> IdentificationData:
     """Make a rough fit to find properties with a slope; then alternate fit and selection until both agree."""
     sensors = fitter.twin.sensors
-    every = parameters_of(card, sensors)
+    every = parameters_of(card, sensors, [test.name for test in fitter.tests])
     slopes = {parameter.name for parameter in every.free if parameter.group == SLOPE}
     if not linear:
         every, slopes = every.without(slopes), set()
@@ -171,4 +171,6 @@ def _result(
     sd = np.sqrt(np.diag(covariance))
     correlation = (covariance / np.outer(sd, sd))[np.ix_(order, order)]
     estimates = tuple(estimate_of(fit.parameters.free[i], float(fit.x[i]), float(sd[i])) for i in order)
+    if missed(fit.noise):
+        estimates = tuple(replace(each, doubtful=each.group == PROPERTY) for each in estimates)
     return IdentificationData(card, file, tests, fit, selection, estimates, correlation)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from tyrefem import library
 from tyrefem.cards import merged
 from tyrefem.errors import InputError, nearest
-from tyrefem.heating_test.verdict import sentences
+from tyrefem.heating_test.verdict import REMARK, sentences
 from tyrefem.materials.card import MaterialCard, material
 
 if TYPE_CHECKING:
@@ -72,8 +72,10 @@ def _property(identification: IdentificationData, layer: str, key: str, unit: st
     estimate = identification.by_name[f"{layer}.{key}"]
     sd = min(estimate.relative_sd or 0.0, _MOST)
     words = f"{source}; 95 % interval {estimate.low:.4g} to {estimate.high:.4g} {unit}"
-    if estimate.verdict != "determined":
+    if estimate.verdict == "not determined":
         words += f"; {estimate.verdict} by the readings: mostly the prior value ({_guess(identification, layer, key)})"
+    elif estimate.verdict != "determined":
+        words += f"; {REMARK[estimate.verdict]}"
     entry: dict[str, Any] = {"source": words, "relative_sd": f"{100 * sd:.2g} %"}
     rig_layer = next(estimate for estimate in identification.card.layers if estimate.name == layer)
     slope = identification.fit.values[f"{layer}.{key}_slope"]

@@ -42,6 +42,11 @@ class Noise:
         return np.asarray(cholesky(covariance, lower=True, check_finite=False))
 
 
+def missed(noise: Noise) -> list[str]:
+    """Sensors whose model error is the largest that an estimate allows: no interval is wide enough for them."""
+    return [sensor for sensor, error in noise.model.items() if error > 0.99 * LARGEST]
+
+
 @dataclass(frozen=True, eq=False)
 class Block(Brief):
     """A series with computed readings, residual (measured - computed), sensitivities (n, parameters) and rise (n,)."""

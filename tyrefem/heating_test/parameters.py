@@ -93,8 +93,13 @@ class Parameters:
         return replace(self, free=tuple(o for o in self.free if o.name not in gone), held={**self.held, **gone})
 
 
-def parameters_of(card: RigCard, sensors: Sequence[str]) -> Parameters:
-    """The parameters of a rig with the given sensors; parameters without uncertainty are fixed.
+def clock_of(run: str) -> str:
+    """The parameter of a run's clock: time by its table at which the card's time is 0, s."""
+    return f"{run}.clock"
+
+
+def parameters_of(card: RigCard, sensors: Sequence[str], runs: Sequence[str] | None = None) -> Parameters:
+    """The parameters of a rig with the given sensors and runs (None: all); parameters without uncertainty are fixed.
 
     >>> from tyrefem.heating_test.card import load
     >>> parameters = parameters_of(load("trtlab")[0], ["outer", "inner", "interface"])
@@ -132,6 +137,8 @@ def parameters_of(card: RigCard, sensors: Sequence[str]) -> Parameters:
             spread = sensor.lag_sd if sensor.lag else 0.0
             listed.append(_log(f"{name}.lag", "s", sensor.lag, spread, RIG))
         listed.append(RigParameter(f"{name}.offset", "K", "linear", 0.0, sensor.offset_sd, RIG))
+    for run in card.runs if runs is None else runs:
+        listed.append(RigParameter(clock_of(run), "s", "linear", 0.0, card.phases.clock_sd, RIG))
     free = tuple(parameter for parameter in listed if parameter.spread > 0)
     return Parameters(free, {parameter.name: parameter.centre for parameter in listed if not parameter.spread > 0})
 

@@ -35,7 +35,8 @@ class SensorReadings(Brief):
     Attributes
     ----------
     times, readings, counts : (n,) s, degC, readings per group.
-    matrix : (n, computed times).
+    matrix : (n, computed times), if the table's clock is right.
+    moments, group : (m,) time of every reading, s, and its group. clock : the computed times.
     """
 
     test: str
@@ -44,6 +45,18 @@ class SensorReadings(Brief):
     readings: Array
     counts: Array
     matrix: Array
+    moments: Array
+    group: Array
+    clock: Clock
+
+    def at(self, late: float) -> Array:
+        """The interpolation if the laser was switched ``late`` s later by the table's clock than the card says."""
+        return self.matrix if late == 0.0 else means_of_groups(self.clock.matrix(self.moments - late), self.group)
+
+    def clock_slope(self, late: float) -> Array:
+        """d interpolation / d ``late``, 1/s."""
+        step = 0.1
+        return (self.at(late + step) - self.at(late - step)) / (2 * step)
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,28 +141,32 @@ def matched(card: RigCard, run: MeasuredRun, wanted: Sequence[str], without: Ite
 
 def _series(test: str, sensor: str, times: Array, values: Array, clock: Clock, card: RigCard) -> SensorReadings:
     """Average groups of neighbours, none of which crosses a switch of the laser."""
-    group = int(np.ceil(times.size / MOST))
+    size = int(np.ceil(times.size / MOST))
     phases = card.phases
     phase = np.searchsorted([phases.idle, phases.idle + phases.heating], times, side="right")
     number = np.zeros(times.size, dtype=int)
     for p in np.unique(phase):
         here = np.flatnonzero(phase == p)
-        number[here] = number.max() + 1 + np.arange(here.size) // group
+        number[here] = number.max() + 1 + np.arange(here.size) // size
     _, number = np.unique(number, return_inverse=True)
     counts = np.bincount(number).astype(float)
-    matrix = clock.matrix(times)
-    if group > 1:
-        means = np.zeros((counts.size, matrix.shape[1]))
-        np.add.at(means, number, matrix)
-        matrix = means / counts[:, None]
     return SensorReadings(
         test,
         sensor,
         np.bincount(number, times) / counts,
         np.bincount(number, values) / counts,
         counts,
-        matrix,
+        means_of_groups(clock.matrix(times), number),
+        times,
+        number,
+        clock,
     )
+
+
+def means_of_groups(rows: Array, group: Array) -> Array:
+    """Mean of the rows (m, n) of every group, which are numbered 0, 1, 2 ... without a gap."""
+    starts = np.flatnonzero(np.diff(group, prepend=-1))
+    return np.asarray(np.add.reduceat(rows, starts) / np.bincount(group)[:, None])
 
 
 _RINGS, _ANGLES = 4, 12

@@ -118,12 +118,16 @@ class ParameterEstimate:
     prior_value: float
     prior_sd: float
     share_left: float
+    #: Whether the model misses the readings by more than an interval can allow for.
+    doubtful: bool = False
 
     @property
     def verdict(self) -> str:
-        """``determined``, ``poor`` or ``not determined``."""
+        """``determined``, ``poor``, ``not determined``, or ``doubtful`` in place of the first two."""
         if self.share_left > PRIOR_SHARE:
             return "not determined"
+        if self.doubtful:
+            return "doubtful"
         if self.relative_sd is not None and self.relative_sd > POOR:
             return "poor"
         return "determined"

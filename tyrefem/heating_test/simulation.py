@@ -15,7 +15,7 @@ from tyrefem.errors import InputError
 from tyrefem.estimates.work import check_readings
 from tyrefem.heating_test.card import Clock, RigCard, load
 from tyrefem.heating_test.grid import USUAL, Fineness
-from tyrefem.heating_test.parameters import parameters_of
+from tyrefem.heating_test.parameters import clock_of, parameters_of
 from tyrefem.heating_test.twin import Twin
 from tyrefem.heating_test.verdict import HOT
 from tyrefem.measured import MeasuredRun
@@ -116,13 +116,13 @@ def simulate(
     twin, clock = Twin(card, sensors, fineness or USUAL), Clock(card.phases, card.phases.end)
     times = np.arange(0.0, card.phases.end + every / 2, every)
     times = times[times <= card.phases.end]
-    matrix = clock.matrix(times)
     rng = np.random.default_rng(seed)
     noise = np.array([card.sensors[name].noise for name in sensors])
     runs, kept = {}, {}
     for name, run in card.runs.items():
         with one_thread():
             kept[name] = twin.fields(numbers, run, clock)
+        matrix = clock.matrix(times - numbers[clock_of(name)])
         readings = matrix @ twin.readings_of_fields(numbers, clock, kept[name])
         if seed is not None:
             readings = readings + noise * rng.normal(size=readings.shape)

@@ -39,6 +39,7 @@ def summary(identification: IdentificationData) -> dict[str, Any]:
         "determined": [item.name for item in identification.properties if item.verdict == "determined"],
         "not_determined": [item.name for item in identification.properties if item.verdict == "not determined"],
         "poorly_determined": [item.name for item in identification.properties if item.verdict == "poor"],
+        "doubtful": [item.name for item in identification.properties if item.verdict == "doubtful"],
         "words": list(sentences(identification)),
         "correlation": {"names": names, "matrix": identification.correlation.round(4)},
         "linear_in_temperature": {

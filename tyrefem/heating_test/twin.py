@@ -21,6 +21,8 @@ Array = NDArray[Any]
 TOLERANCE = 0.1
 #: Parameters of sensors only, which need no new solution.
 _VIEWS = ("spot_along", "spot_across", "depth", "lag", "offset")
+#: Parameters of tables only: they shift the times at which a table has its readings, not the readings of a time.
+_TABLES = ("clock",)
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,11 +98,13 @@ class Twin:
         return self.readings_of_fields(values, clock, self.fields(values, run, clock))
 
     def slopes(self, parameters: Parameters, x: Array, run: RunCard, clock: Clock, fields: Array, base: Array) -> Array:
-        """d readings / d coordinates, (computed times, sensors, parameters), for the fields at x."""
+        """d readings / d coordinates, (computed times, sensors, parameters), for the fields at x; 0 of a clock."""
         values = parameters.values(x)
         out = np.zeros((*base.shape, len(parameters)))
         solved = [
-            i for i, parameter in enumerate(parameters.free) if not _only_seen(parameter) and not _thickness(parameter)
+            i
+            for i, parameter in enumerate(parameters.free)
+            if not (_only_seen(parameter) or _of_tables(parameter) or _thickness(parameter))
         ]
         names = tuple(parameters.free[i].name for i in solved)
         tangent = self._tangent(values, names, run, clock, fields)
@@ -112,7 +116,7 @@ class Twin:
                 parameter = parameters.free[i]
                 out[:, column, i] = slope * parameter.spread
         for i, parameter in enumerate(parameters.free):
-            if i in solved:
+            if i in solved or _of_tables(parameter):
                 continue
             step = 0.05 if _only_seen(parameter) else 0.2
             moved = parameters.values(at(x, i, step))
@@ -139,6 +143,10 @@ class Twin:
 
 def _only_seen(parameter: RigParameter) -> bool:
     return parameter.name.rpartition(".")[2] in _VIEWS
+
+
+def _of_tables(parameter: RigParameter) -> bool:
+    return parameter.name.rpartition(".")[2] in _TABLES
 
 
 def _thickness(parameter: RigParameter) -> bool:

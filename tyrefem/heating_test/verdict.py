@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tyrefem.heating_test.noise import missed
 from tyrefem.heating_test.parameters import PROPERTY, RIG, SLOPE
 from tyrefem.heating_test.selection import POOR, ParameterEstimate
 
@@ -17,6 +18,12 @@ if TYPE_CHECKING:
 BOUND = 0.95
 #: Model error, relative to the rise, with a warning; temperature at which rubber changes, degC.
 ASTRAY, HOT = 0.01, 200.0
+#: What a verdict between "determined" and "not determined" means.
+REMARK = {"poor": "poorly determined by the readings", "doubtful": "doubtful: the model does not describe the readings"}
+#: Standard deviations of the card from which on an identified number is reported as unusual.
+UNUSUAL = 3.0
+#: Time beside a switch of the laser in which a wrong clock shows most, s.
+SOON = 60.0
 
 
 def name_in_words(name: str) -> str:
@@ -37,9 +44,12 @@ def shown(estimate: ParameterEstimate, digits: int = 3) -> str:
 
 def sentences(identification: IdentificationData) -> tuple[str, ...]:
     """Sentences of the verdict, most important first."""
+    astray = list(_misfit(identification))
+    doubtful = [estimate for estimate in identification.properties if estimate.verdict == "doubtful"]
     unknown = [estimate for estimate in identification.properties if estimate.verdict == "not determined"]
     poor = [estimate for estimate in identification.properties if estimate.verdict == "poor"]
-    out = [f"NOT DETERMINED: {name_in_words(estimate.name)}. {_left_words(estimate)}" for estimate in unknown]
+    out = [*_doubt(identification), *astray] if doubtful else []
+    out += [f"NOT DETERMINED: {name_in_words(estimate.name)}. {_left_words(estimate)}" for estimate in unknown]
     out += [
         f"POORLY DETERMINED: {name_in_words(estimate.name)}, {shown(estimate)}: "
         f"relative standard deviation above {POOR:.0%}."
@@ -47,9 +57,10 @@ def sentences(identification: IdentificationData) -> tuple[str, ...]:
     ]
     if unknown or poor:
         out += _reasons(identification)
-    else:
+    elif not doubtful:
         out.append("The readings determine all conductivities and specific heats.")
     out += _bound(identification)
+    out += _unusual(identification)
     left = [
         name_in_words(estimate.name)
         for estimate in identification.estimates
@@ -61,8 +72,25 @@ def sentences(identification: IdentificationData) -> tuple[str, ...]:
             "The intervals include their uncertainty."
         )
     out += _linear(identification)
-    out += _misfit(identification)
-    return tuple(out)
+    return tuple(out if doubtful else [*out, *astray])
+
+
+def _doubt(identification: IdentificationData) -> Iterator[str]:
+    """That the model misses the readings of a sensor, and what to look for."""
+    phases, sensors = identification.card.phases, missed(identification.fit.noise)
+    yield (
+        f"DOUBTFUL: the model does not describe the readings of {' and '.join(sensors)}; conductivities and specific "
+        "heats may be wrong by more than their intervals. Look at the residuals first."
+    )
+    switches = np.array([phases.idle, phases.idle + phases.heating])
+    for block in identification.fit.blocks:
+        if block.series.sensor in sensors and phases.clock_sd == 0:
+            worst = float(block.series.times[np.argmax(np.abs(block.residual))])
+            if np.abs(worst - switches).min() < SOON:
+                yield (
+                    f"Run '{block.series.test}': the largest residual, at {worst:.0f} s, is beside a switch of the "
+                    'laser. Is the clock right? With phases.clock_sd = "10 s" it is fitted, too.'
+                )
 
 
 def _left_words(estimate: ParameterEstimate) -> str:
@@ -98,6 +126,18 @@ def _reasons(identification: IdentificationData) -> Iterator[str]:
         yield "The readings do not include the cooling phase."
 
 
+def _unusual(identification: IdentificationData) -> Iterator[str]:
+    """Numbers that the readings move far from the card."""
+    fit = identification.fit
+    for parameter, x in zip(fit.parameters.free, fit.x, strict=True):
+        if abs(x) > UNUSUAL:
+            yield (
+                f"Unusual: by these readings {name_in_words(parameter.name)} is "
+                f"{shown(identification.by_name[parameter.name])}, {abs(x):.1f} standard deviations from the card's "
+                f"{parameter.value(0.0):.3g}. Check it, or the card's standard deviation."
+            )
+
+
 def _bound(identification: IdentificationData) -> Iterator[str]:
     properties = [i for i, estimate in enumerate(identification.estimates) if estimate.group == PROPERTY]
     for a in properties:
@@ -129,7 +169,9 @@ def _linear(identification: IdentificationData) -> Iterator[str]:
 
 def _misfit(identification: IdentificationData) -> Iterator[str]:
     for name, error in identification.fit.noise.model.items():
-        if error > ASTRAY:
+        rise = max(float(block.rise.max()) for block in identification.fit.blocks if block.series.sensor == name)
+        # Less than the noise of a reading is no sign of a missing effect, however small the rise.
+        if error > ASTRAY and error * rise > identification.card.sensors[name].noise:
             yield (
                 f"The model deviates by about {error:.1%} of the rise at '{name}', varying slowly: an effect is "
                 "missing or a number of the card is wrong. The intervals are wider because of it."

@@ -78,6 +78,7 @@ def save(identification: IdentificationData, folder: str | Path, base: str | Seq
             "determined",
             "not_determined",
             "poorly_determined",
+            "doubtful",
             "words",
             "estimates",
             "materials",
