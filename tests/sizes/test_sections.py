@@ -89,6 +89,19 @@ def test_flotation_loads_are_those_of_the_load_table(size: str, psi: float, poun
     assert rules["rated_load"].value == pytest.approx(pounds * 4.448222, rel=0.03)
 
 
+@pytest.mark.parametrize(
+    ("size", "low", "high"),
+    [("31x10.50R15LT", 7.0, 9.0), ("33x12.50R15LT", 8.0, 10.5), ("37x13.50R22LT", 9.5, 12), ("42x15.50R24LT", 11, 14)],
+)
+def test_flotation_sizes_have_the_rims_of_a_catalogue(size: str, low: float, high: float) -> None:
+    """Catalogue of the Radar Renegade X; the rims an inch beyond are refused."""
+    for width in (low, high):
+        assert draw_size(size, {"rim_width": f"{width} in"}).rules["rim_width"].value == pytest.approx(width * INCH)
+    for width in (low - 1.5, high + 1.5):
+        with pytest.raises(InputError, match=r"too (narrow|wide) for"):
+            draw_size(size, {"rim_width": f"{width} in"})
+
+
 @pytest.mark.parametrize(("service", "psi"), [("33x12.50R15LT 108Q", 35), ("37x12.50R17LT 124Q", 50),
                                               ("35x12.50R17LT 121Q", 65), ("33x12.50R20LT 119Q", 80)])  # fmt: skip
 def test_a_load_index_decides_the_pressure_of_a_flotation_size(service: str, psi: float) -> None:

@@ -11,13 +11,18 @@ STANDARD = "Tire and Rim Association, UN R54 (from memory)"
 BELOW_NOMINAL = 0.5 * INCH
 DIAMETER_SOURCE = (
     f"{STANDARD}: 0.5 in below the nominal diameter; traction treads 0.25 in below it "
-    "(a maker's catalogue: 781, 832, 883 mm for 31, 33, 35 in)"
+    "(catalogue of the Radar Renegade X: 781, 832, 883 mm for 31, 33, 35 in)"
 )
 #: Measuring rim, and the rim of the nominal width, over the nominal width.
 RIM_SHARE = 0.8
 RIM_SOURCE = (
-    "0.8 nominal widths to the half inch: the measuring rims 7.5, 8.5, 10, 11 in of 9.50, 10.50, 12.50, 13.50 in"
+    "0.8 nominal widths to the half inch: the measuring rims 8.5, 10, 11, 12.5 in of 10.50, 12.50, 13.50, 15.50 in in "
+    "the catalogue of the Radar Renegade X"
 )
+WIDTH_SOURCE = "rule of ETRTO; 268, 318, 346 mm for 10.50, 12.50, 13.50 in in the catalogue of the Radar Renegade X"
+#: Allowed rims, so much narrower and wider than the measuring rim, of the nominal width: 7 to 9 in for 10.50, 8 to 11
+#: in for 12.50, 9.5 to 12 in for 13.50, 11 to 14 in for 15.50 in that catalogue.
+RIM_REACH = (0.16, 0.1)
 TREAD_SHARE = 0.81
 TREAD_SOURCE = "estimate: 0.81 nominal widths (makers' catalogues, from memory)"
 #: Pressure of the load ranges, psi, up to `NARROW` of nominal width and wider (Tire and Rim Association, from memory).

@@ -37,15 +37,23 @@ def check_rim_diameter(size: TyreSize) -> float:
     return diameter
 
 
-def measuring_rim(size: TyreSize, rule: Rules, share: float, step: float, source: str) -> float:
-    """Rule of the rim's width: the nominal width times a share, to the nearest ``step``; the allowed range around it.
+def measuring_rim(
+    size: TyreSize,
+    rule: Rules,
+    share: float,
+    step: float,
+    source: str,
+    reach: tuple[float, float] = (NARROWER, WIDER),
+) -> float:
+    """Rule of the rim's width: the nominal width times a share, to the nearest ``step``; the allowed range around it,
+    ``reach`` of the nominal width narrower and wider.
 
     Raises
     ------
     InputError : a given rim is too narrow or too wide.
     """
     measuring = round(size.width * share / step) * step
-    low, high = measuring - NARROWER * size.width, measuring + WIDER * size.width
+    low, high = measuring - reach[0] * size.width, measuring + reach[1] * size.width
     given = rule("rim_width", measuring, "in", source)
     if not low - 1e-4 <= given <= high + 1e-4:
         raise InputError(
@@ -57,9 +65,9 @@ def measuring_rim(size: TyreSize, rule: Rules, share: float, step: float, source
     return given
 
 
-def design_width(size: TyreSize, rule: Rules, rim_width: float, theoretical: float) -> float:
+def design_width(size: TyreSize, rule: Rules, rim_width: float, theoretical: float, standard: str = STANDARD) -> float:
     """Section width on this rim: the nominal width and 0.4 of what the rim is wider than the theoretical one."""
-    source = f"{STANDARD}: nominal width + 0.4 (rim width - {theoretical:g} nominal widths)"
+    source = f"{standard}: nominal width + 0.4 (rim width - {theoretical:g} nominal widths)"
     width = size.width + 0.4 * (rim_width - theoretical * size.width)
     return rule("section_width", width, "mm", source, 0.8 * size.width, 1.25 * size.width)
 

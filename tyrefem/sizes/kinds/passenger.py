@@ -43,13 +43,17 @@ def draw_with(
     share = next(share for top, share in RIM_SHARES if series <= top)
     words = f"{STANDARD}: measuring rim, {share:g} nominal widths to the half inch"
     if inches:
-        share, words = flotation.RIM_SHARE, flotation.RIM_SOURCE
-    rim_width = measuring_rim(size, rule, share, INCH / 2, words)
+        rim_width = measuring_rim(size, rule, flotation.RIM_SHARE, INCH / 2, flotation.RIM_SOURCE, flotation.RIM_REACH)
+    else:
+        rim_width = measuring_rim(size, rule, share, INCH / 2, words)
     rim = road_rim(rule, diameter, rim_width, 17.3e-3, 9.5e-3, 0.0872664626, f"J contour of a 5 deg seat, {STANDARD}")
     words = flotation.DIAMETER_SOURCE if inches else f"{STANDARD}: rim diameter + 2 section heights"
     outer = rule("outer_diameter", diameter + 2 * height, "mm", words, diameter + 0.04)
     theoretical = 0.85 if series < 0.5 else 0.7
-    design_width(size, rule, rim_width, flotation.RIM_SHARE if inches else theoretical)
+    if inches:
+        design_width(size, rule, rim_width, flotation.RIM_SHARE, flotation.WIDTH_SOURCE)
+    else:
+        design_width(size, rule, rim_width, theoretical)
     if inches:
         pressure = rated_flotation(size, rule)
     else:
