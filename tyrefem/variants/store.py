@@ -133,7 +133,8 @@ class Store:
 
     def _unreadable(self) -> InputError:
         if not self._end:
-            return InputError("is not a file of finished variants", file=self.path)
+            words = "is not a file of finished variants: move it away, or replace it with --restart --force"
+            return InputError(words, file=self.path)
         return InputError(
             f"the record at byte {self._end} is damaged; delete the finished variants with --restart", file=self.path
         )
