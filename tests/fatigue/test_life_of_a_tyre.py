@@ -127,6 +127,15 @@ def test_temperatures_of_the_run_are_used() -> None:
     assert plateau.element_km[hottest] < course.element_km[hottest]
 
 
+@pytest.mark.parametrize("size", ["8 mm", "10 mm"])
+def test_temperatures_are_known_where_the_meshes_differ(size: str) -> None:
+    """Straight edges of the mechanical mesh lie up to their sagitta beyond the hollow side of the section."""
+    warm = life(tyre(mesh__size=size))
+    inside = np.isfinite(warm.km)
+    assert warm.shortest > 0
+    assert (warm.temperatures[inside] > 24.9).all()
+
+
 def test_places_are_sorted_and_apart(at_60: LifeData) -> None:
     places = first_places(at_60)
     assert len(places) == 10

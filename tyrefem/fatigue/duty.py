@@ -39,8 +39,8 @@ class WarmRun(Protocol):
         """Times of the readings, (n,) s."""
         ...
 
-    def at(self, points: ArrayLike) -> Array:
-        """Temperatures at points (n, 2) in (r, z), m: (n_times, n), degC."""
+    def near(self, points: ArrayLike) -> Array:
+        """Temperatures at points (n, 2) in (r, z), m, of another mesh of the section: (n_times, n), degC."""
         ...
 
 
@@ -63,14 +63,14 @@ class Duty:
         """The drive of a finished run at its temperatures; with ``plateau`` each phase at those of its end."""
         times = np.asarray(result.times)
         if not plateau:
-            return cls(solved(result.tyre.schedule), times, lambda places: np.asarray(result.at(places)))
+            return cls(solved(result.tyre.schedule), times, lambda places: np.asarray(result.near(places)))
         starts = np.asarray(result.tyre.schedule.drive.starts)
         ends = np.append(starts[1:], result.tyre.schedule.drive.end)
         # Every phase has its own begin and end: the time between two phases stands twice, an interval of no length.
         inside = [(times > start - 1e-9) & (times < end + 1e-9) for start, end in zip(starts, ends, strict=True)]
         last = np.concatenate([np.full(int(part.sum()), np.flatnonzero(part)[-1]) for part in inside])
         repeated = np.concatenate([times[part] for part in inside])
-        return cls(solved(result.tyre.schedule), repeated, lambda places: np.asarray(result.at(places))[last])
+        return cls(solved(result.tyre.schedule), repeated, lambda places: np.asarray(result.near(places))[last])
 
     @classmethod
     def at_temperature(cls, schedule: CycleSchedule, temperature: float) -> Duty:

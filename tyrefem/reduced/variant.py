@@ -107,9 +107,9 @@ class Variant:
         section = self._alike.study.section
         return self._model.node_places.get((section, peak.point), located)
 
-    def at(self, points: ArrayLike) -> Array:
-        """Temperatures at points (n, 2) in (r, z), m: (n_times, n), degC."""
-        return self.result.at(points)
+    def near(self, points: ArrayLike) -> Array:
+        """Temperatures at points (n, 2) in (r, z), m, of another mesh of the section: (n_times, n), degC."""
+        return self.result.near(points)
 
     @functools.cached_property
     def recorded(self) -> dict[str, Array]:

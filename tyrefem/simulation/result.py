@@ -15,7 +15,7 @@ from tyrefem.brief import SHOWN, Brief
 from tyrefem.conduction.field import History
 from tyrefem.conduction.points import OutsideMeshError, as_points
 from tyrefem.errors import InputError
-from tyrefem.geometry.meshing.sagitta import snapped
+from tyrefem.geometry.meshing.sagitta import nearest_places, snapped
 from tyrefem.geometry.wall import inside_mesh, wall_of
 from tyrefem.mechanics.cautions import warnings_of
 from tyrefem.quantity import KELVIN
@@ -120,6 +120,15 @@ class ResultData(Brief):
         except OutsideMeshError as error:
             places = as_points(points).copy()
             places[error.numbers] = snapped(self.tyre.mesh, places[error.numbers])
+            return np.asarray(self.history.at(places))
+
+    def near(self, points: ArrayLike) -> Array:
+        """Temperatures at points of another mesh of the section, as `at`: one outside gets that of the nearest place."""
+        try:
+            return np.asarray(self.history.at(points))
+        except OutsideMeshError as error:
+            places = as_points(points).copy()
+            places[error.numbers] = nearest_places(self.tyre.mesh, places[error.numbers])
             return np.asarray(self.history.at(places))
 
     def reading_at(self, time: float | None) -> int:

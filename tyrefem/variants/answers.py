@@ -327,8 +327,8 @@ class FinishedRun(Protocol):
         """(s, depth) of a peak, m."""
         ...
 
-    def at(self, points: ArrayLike) -> Array:
-        """Temperatures at points (n, 2) in (r, z), m: (n_times, n), degC."""
+    def near(self, points: ArrayLike) -> Array:
+        """Temperatures at points (n, 2) in (r, z), m, of another mesh of the section: (n_times, n), degC."""
         ...
 
     @property

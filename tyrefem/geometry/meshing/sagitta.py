@@ -41,22 +41,42 @@ def snapped(tyre: TyreMesh, points: ArrayLike) -> Array:
     )
 
 
-def _moved_to_edge(tyre: TyreMesh, points: Array) -> Array:
-    ends = np.asarray(tyre.mesh.p.T[tyre.mesh.facets[:, tyre.mesh.boundary_facets()].T])
+def nearest_places(tyre: TyreMesh, points: ArrayLike) -> Array:
+    """Points (n, 2) outside a mesh, moved to the nearest point of its edge, however far it is.
+
+    For points of another mesh of the section: on a hollow side its straight edges lie outside the section.
+    """
+    places = np.asarray(points, dtype=float).reshape(-1, 2)
+    parts = (places[first : first + TOGETHER] for first in range(0, len(places), TOGETHER))
+    return np.concatenate([_nearest(_edges(tyre), part)[0] for part in parts] or [places])
+
+
+def _edges(tyre: TyreMesh) -> Array:
+    """Ends of the edges at the mesh's boundary, (n, 2, 2)."""
+    return np.asarray(tyre.mesh.p.T[tyre.mesh.facets[:, tyre.mesh.boundary_facets()].T])
+
+
+def _nearest(ends: Array, points: Array) -> tuple[Array, Array, NDArray[np.intp]]:
+    """The nearest place on edges with these ends of every point, its distance, and the number of its edge."""
     start, along = ends[:, 0], ends[:, 1] - ends[:, 0]
     part = np.clip(((points[:, None] - start) * along).sum(axis=2) / (along**2).sum(axis=1), 0.0, 1.0)
     nearest = start + part[..., None] * along
     distances = np.linalg.norm(points[:, None] - nearest, axis=2)
-    edge = distances.argmin(axis=1)
-    each = np.arange(len(points))
+    edge, each = distances.argmin(axis=1), np.arange(len(points))
+    return np.asarray(nearest[each, edge]), np.asarray(distances[each, edge]), edge
+
+
+def _moved_to_edge(tyre: TyreMesh, points: Array) -> Array:
+    ends = _edges(tyre)
+    nearest, distances, edge = _nearest(ends, points)
     allowed = np.where(tyre.section.contains(points, ROUNDED), sagitta(tyre, ends[edge]), 0.0)
-    wrong = np.flatnonzero(distances[each, edge] > allowed + ROUNDED)
+    wrong = np.flatnonzero(distances > allowed + ROUNDED)
     if wrong.size:
         worst = wrong[0]
-        (r, z), away, left = points[worst], distances[worst, edge[worst]], allowed[worst]
+        (r, z), away, left = points[worst], distances[worst], allowed[worst]
         outline = f", and the straight edge there leaves out {left:.2g} m of the section" if left else ""
         raise InputError(f"point ({r:.6g}, {z:.6g}) m lies {away:.3g} m outside the mesh{outline}", field="points")
-    return np.asarray(nearest[each, edge])
+    return nearest
 
 
 def sagitta(tyre: TyreMesh, ends: Array) -> Array:
