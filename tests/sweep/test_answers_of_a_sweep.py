@@ -647,3 +647,12 @@ def test_a_tornado_without_tolerances_names_the_flag_that_gives_them(tyre: Study
     }
     with pytest.raises(InputError, match="give --tolerance-of KEY=5%"):
         tolerances(tyre.replace(certain))
+
+
+def test_a_tolerance_of_a_temperature_is_refused_with_the_table_that_takes_kelvins(tyre: Study) -> None:
+    with pytest.raises(InputError) as refused:
+        tolerances(tyre, {"drive.ambient": 0.05})
+    assert str(refused.value).startswith("tornado.tolerances.drive.ambient: ")
+    assert "an sd like '2 K' in [uncertainty]" in str(refused.value)
+    in_kelvins = tyre.replace({"uncertainty": {"drive.ambient": "2 K"}})
+    assert "drive.ambient" in [number.key for number in tolerances(in_kelvins)]

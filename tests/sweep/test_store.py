@@ -186,7 +186,7 @@ def test_another_plan_is_refused_and_nothing_lost(tmp_path: Path) -> None:
 
 def test_a_file_of_something_else_is_refused(tmp_path: Path) -> None:
     (tmp_path / NAME).write_text("time,T\n0,25\n")
-    with pytest.raises(InputError, match="not a file of finished variants: move it away, or replace it with --restart --force"):
+    with pytest.raises(InputError, match="not a file of finished variants: move it away, or replace it with"):
         Store(tmp_path, "plan").open()
     assert (tmp_path / NAME).read_text() == "time,T\n0,25\n"
 

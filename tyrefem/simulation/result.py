@@ -123,7 +123,7 @@ class ResultData(Brief):
             return np.asarray(self.history.at(places))
 
     def near(self, points: ArrayLike) -> Array:
-        """Temperatures at points of another mesh of the section, as `at`: one outside gets that of the nearest place."""
+        """Temperatures at points of another mesh of the section, as `at`; outside, those of the nearest place."""
         try:
             return np.asarray(self.history.at(points))
         except OutsideMeshError as error:

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from tyrefem.errors import InputError
+from tyrefem.inputs.changes import check_factor
 from tyrefem.inputs.study import StudyData
 from tyrefem.inputs.uncertain_numbers import UncertainNumber, left_out, uncertain_number
 from tyrefem.sweep.question import SweepQuestion
@@ -52,10 +53,21 @@ def tolerances(
 def _number(study: StudyData, name: str, tolerance: float, links: Links) -> UncertainNumber:
     group = members(study, name, links)
     if not group.linked:
-        return uncertain_number(study, name, tolerance)
+        number = uncertain_number(study, name, tolerance)
+        _check_share(name, number.written)
+        return number
     together = factored(study, group)
     written = (together.nominal, *(value for _, value in together.also))
     return UncertainNumber(name, together.keys, written, tolerance, regions=(name, *together.keys))
+
+
+def _check_share(name: str, written: tuple[Any, ...]) -> None:
+    """Raise `InputError` for a tolerance of a temperature, which has no share, with the table that takes kelvins."""
+    for value in written:
+        try:
+            check_factor(value)
+        except InputError as error:
+            raise InputError(f"{error.message} in [uncertainty]", field=f"tornado.tolerances.{name}") from None
 
 
 def tornado_plan(
