@@ -13,7 +13,9 @@ from toy_study import Entry, Sensor, Study, measured_from
 
 import tyrefem as tf
 from tyrefem.compare import compare
-from tyrefem.compare.experiment import acting_in, driven, experiments
+from tyrefem.compare.experiment import Experiment, acting_in, driven, experiments
+from tyrefem.compare.omitted import start_notes
+from tyrefem.compare.sensors import check_sensors
 from tyrefem.diagnose.data.runs import measured_drive
 from tyrefem.errors import InputError, ResultWarning
 from tyrefem.measured import MeasuredRun
@@ -172,3 +174,32 @@ def test_files_of_one_name_in_two_folders_are_said_to_be_one_run(study: Study, t
         warnings.simplefilter("error")
         counts = [len(experiments(replace(study, measured=entries))) for entries in (named, apart, twice)]
     assert counts == [1, 2, 2]
+
+
+def of_tyre(first: float, sensors: tuple[str, ...] = ("crown-inner", "bead-middle", "tread-outer")) -> MeasuredRun:
+    """A run of 60 s whose sensors read ``first`` + 0.1 K/s at 5, 25 and 45 s; the first sensor begins late."""
+    times = np.array([5.0, 25.0, 45.0])
+    frame = pd.DataFrame(dict.fromkeys(sensors, first + 0.1 * times))
+    frame.iloc[0, 0] = np.nan
+    return MeasuredRun("A", times, frame)
+
+
+@pytest.mark.parametrize(
+    ("first", "drive", "noted"), [(55.0, {}, True), (25.0, {}, False), (55.0, {"initial": "55 degC"}, False)]
+)
+def test_a_tyre_that_was_warm_at_the_start_is_noted(first: float, drive: dict[str, str], noted: bool) -> None:
+    """Else its 30 K too many look like an effect; with the run's own ``initial`` there is nothing to note."""
+    notes = start_notes(tf.study("hidden-effect"), [Experiment(of_tyre(first), "A", drive)])
+    assert len(notes) == noted
+    for note in notes:
+        assert "run 'A' begins at 56 degC (median of 2 sensors" in note
+        assert "its drive at 25 degC" in note
+
+
+def test_a_rim_that_is_not_computed_is_refused_before_anything_is_simulated() -> None:
+    study = tf.study("hidden-effect")
+    rim = of_tyre(25.0, ("crown-inner", "rim"))
+    with pytest.raises(InputError, match=r"column 'rim': the rim of the study has a given temperature.*lumped"):
+        check_sensors([rim], study)
+    lumped = {"law": "lumped", "mass": "8 kg", "cooling": "10 W/K"}
+    check_sensors([rim], study.replace({"boundaries.rim": lumped}))

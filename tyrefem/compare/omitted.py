@@ -1,4 +1,4 @@
-"""What nothing is compared with: readings outside the simulated span, and columns without temperatures."""
+"""What nothing is compared with: readings outside the simulated span, columns without temperatures, a warm start."""
 
 from __future__ import annotations
 
@@ -8,10 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.compare.experiment import Experiment
+from tyrefem.compare.sensors import OUTSIDE_THE_RUBBER
 from tyrefem.inputs.study import StudyData
 
 #: How a note begins that stands in the summary, too.
 ERROR = "ERROR: "
+#: Estimates: a reading up to so many s counts as one of the start; so many K off the drive's start it is reported.
+EARLY, WARM = 15.0, 10.0
 
 
 def outside_note(experiment: Experiment, first: float, last: float, outside: int) -> list[str]:
@@ -60,6 +63,31 @@ def outside_notes(study: StudyData, planned: Sequence[Experiment]) -> list[str]:
 def _end(study: StudyData, experiment: Experiment) -> float:
     """Last time of the drive of a run, s."""
     return (study.with_drive(dict(experiment.drive)) if experiment.drive else study).card.drive.end
+
+
+def start_notes(study: StudyData, planned: Sequence[Experiment]) -> list[str]:
+    """Notes on runs whose tyre did not start at the temperature of the drive: the median of the first readings."""
+    notes = []
+    for experiment in planned:
+        run = experiment.run
+        early = (run.times >= -1e-9) & (run.times <= EARLY)
+        columns = [run.temperatures[name].to_numpy(dtype=float)[early] for name in run.sensors if _in_rubber(name)]
+        first = [column[np.isfinite(column)][0] for column in columns if np.isfinite(column).any()]
+        if not first:
+            continue
+        initial = (study.with_drive(dict(experiment.drive)) if experiment.drive else study).card.drive.initial
+        start = float(np.median(first))
+        if abs(start - initial) > WARM:
+            notes.append(
+                f"Note: run '{experiment.name}' begins at {start:.0f} degC (median of {len(first)} sensors in the "
+                f"first {EARLY:g} s), its drive at {initial:.0f} degC: if the tyre was warm, state drive.initial in "
+                "the run's [[measured]] entry"
+            )
+    return notes
+
+
+def _in_rubber(sensor: str) -> bool:
+    return sensor not in OUTSIDE_THE_RUBBER
 
 
 def columns_note(planned: Sequence[Experiment]) -> list[str]:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from tyrefem.compare.interface import SensorLike, StudyLike
 from tyrefem.errors import InputError, nearest, quoted
+from tyrefem.inputs.study import StudyData
 from tyrefem.inputs.study_card import Sensor
 from tyrefem.measured import MeasuredRun
 from tyrefem.measured.columns import parts
@@ -32,6 +33,15 @@ def sensor_of(study: StudyLike, name: str) -> SensorLike:
 def check_sensors(runs: Sequence[MeasuredRun], study: StudyLike) -> None:
     """Raises InputError for all columns that are no sensors, and for a sensor's column without a temperature unit."""
     allowed = {*study.sensors, *OUTSIDE_THE_RUBBER}
+    if isinstance(study, StudyData) and "rim" not in study.sensors and study.card.boundaries.rim.law == "fixed":
+        allowed.remove("rim")
+        for run in runs:
+            if "rim" in run.sensors:
+                raise InputError(
+                    "column 'rim': the rim of the study has a given temperature, so none is computed; ignore the "
+                    'column, or set boundaries.rim to law = "lumped"',
+                    file=run.file,
+                )
     unknown: dict[str, list[MeasuredRun]] = {}
     for run in runs:
         for sensor in run.sensors:

@@ -11,7 +11,7 @@ from typing import Any, Unpack
 
 from tyrefem.brief import Brief
 from tyrefem.compare.experiment import Experiment, Table, driven_as, experiments
-from tyrefem.compare.omitted import ERROR, columns_note, outside_notes
+from tyrefem.compare.omitted import ERROR, columns_note, outside_notes, start_notes
 from tyrefem.compare.uncertain_drives import check_uncertain_drives
 from tyrefem.diagnose.amend import Change, amended, changes
 from tyrefem.diagnose.beside.best_fit import fit_beside, not_asked_for
@@ -275,7 +275,7 @@ def _measured_drives(
         if run.last <= 0:
             raise InputError(f"run '{run.name}' has readings at 0 s only", field="measured", file=study.file)
     empty = [run for run in runs if run.last <= 0]
-    notes = (*outside_notes(study, planned), *columns_note(planned))
+    notes = (*outside_notes(study, planned), *start_notes(study, planned), *columns_note(planned))
     return with_noise_of_data(tuple(run for run in runs if run not in empty), settings), (
         *(f"held-out run '{run.name}' was left out: it has readings at 0 s only, which test nothing" for run in empty),
         *(note.removeprefix("Note: ") for note in notes),
