@@ -37,6 +37,23 @@ def test_road_sizes(text: str, kind: str, width: float, series: float | None, ri
         assert size.series == pytest.approx(series)
 
 
+def test_marks_on_the_wall_change_nothing() -> None:
+    plain = parse_size("205/55R16 94V")
+    marks = ("XL", "EXTRA LOAD", "XL TL", "Tubeless", "M+S", "M&S 3PMSF", "SL", "Reinforced", ", M+S")
+    for text in (*(f"205/55R16 94V {mark}" for mark in marks), "205/55R16 94VXL"):
+        size = parse_size(text)
+        assert size.text == text
+        assert (size.kind, size.width, size.load) == (plain.kind, plain.width, plain.load)
+    assert parse_size("295/80R22.5 152/148M TL").load == parse_size("295/80R22.5 152/148M").load
+    assert parse_size("22x5.5 8PR TL").ply_rating == 8
+
+
+@pytest.mark.parametrize("mark", ["RFT", "Run Flat", "run-flat", "ZP", "SSR"])
+def test_run_flat_tyres_are_refused_with_the_usual_tyre_of_the_size(mark: str) -> None:
+    with pytest.raises(InputError, match=r"run-flat tyre, whose thick sidewalls .* of this size is 205/55R16 91W$"):
+        parse_size(f"205/55R16 91W {mark} XL")
+
+
 @pytest.mark.parametrize(
     ("text", "kind", "outside", "width", "rim", "plies"),
     [

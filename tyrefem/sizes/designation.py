@@ -11,8 +11,14 @@ from tyrefem.sizes.load_index import load_of_index
 
 INCH, MM = 0.0254, 1e-3
 _NUMBER = r"\d{1,4}(?:\.\d{1,3})?"
-#: Load index with speed symbol, as "91V", "152/148M", "(94Y)", "98W XL".
-_SERVICE = r"(?:\s+\(?(?P<index>\d{2,3})(?:/\d{2,3})?\s*(?P<symbol>[A-HJ-NP-Y])\)?)?(?:\s*XL)?"
+#: Load index with speed symbol, as "91V", "152/148M", "(94Y)".
+_SERVICE = r"(?:\s+\(?(?P<index>\d{2,3})(?:/\d{2,3})?\s*(?P<symbol>[A-HJ-NP-Y])\)?)?"
+#: Marks behind a size that change nothing in the section, and those of run-flat tyres.
+_MARKS = re.compile(
+    r"\s*,?\s*(?:\b|(?<=\d[A-Z]))(?:XL|SL|extra load|standard load|reinforced|TL|tubeless|M\s?[+&/]\s?S|3PMSF)(?!\w)",
+    re.IGNORECASE,
+)
+_RUN_FLAT = re.compile(r"\s*,?\s*\b(?:run[\s-]?flat|RFT|ROF|SSR|ZP)(?!\w)", re.IGNORECASE)
 _PLIES = r"(?:\s*,?\s*(?P<plies>\d{1,2})\s*-?\s*(?:PR|ply(?:\s*rating)?))?"
 #: Load range behind the rim, as "/E" or " E"; without LT before the size a C is that of commercial tyres.
 _RANGE = r"(?:(?P<slash>\s?/\s?|\s?)(?P<letter>[B-H])(?![A-Z0-9]))?"
@@ -112,18 +118,25 @@ def parse_size(text: object) -> TyreSize:
     if not isinstance(text, str):
         raise InputError(f"{text!r} is no tyre size; write one like {_listed()}", field="size")
     tidy = " ".join(text.split())
-    if match := _METRIC.fullmatch(tidy):
+    plain = _MARKS.sub("", tidy).strip()
+    if _RUN_FLAT.search(plain):
+        raise InputError(
+            f"'{text}' is a run-flat tyre, whose thick sidewalls have no rules here; the usual tyre of this size is "
+            f"{_RUN_FLAT.sub('', plain)}",
+            field="size",
+        )
+    if match := _METRIC.fullmatch(plain):
         return _metric(tidy, match)
-    if match := _TRUCK.fullmatch(tidy):
+    if match := _TRUCK.fullmatch(plain):
         width = float(match["width"]) * INCH
         return TyreSize(
             _tidy(tidy), "truck", width, FULL_SERIES, float(match["rim"]) * INCH, None, _load(match), _plies(match)
         )
-    if (match := _FLOTATION.fullmatch(tidy)) and _is_flotation(match):
+    if (match := _FLOTATION.fullmatch(plain)) and _is_flotation(match):
         return _flotation(tidy, match)
-    if match := _AIRCRAFT.fullmatch(tidy):
+    if match := _AIRCRAFT.fullmatch(plain):
         return _aircraft(tidy, match)
-    if match := _FLAT_RIM.fullmatch(tidy):
+    if match := _FLAT_RIM.fullmatch(plain):
         raise InputError(
             f"'{text}' is a size for flat rims with 5 deg seats, which have no rules here; truck sizes are for 15 deg "
             f"rims (diameters in half inches), such as 11R22.5 or 295/80R22.5{_tubeless(match)}",
