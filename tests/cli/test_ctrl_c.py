@@ -123,6 +123,8 @@ def test_a_campaign_keeps_its_cases(here: Path) -> None:
     study.write_text('cases = "cases.csv"\n' + study.read_text(encoding="utf-8"), encoding="utf-8")
     study.with_name("cases.csv").write_text("name,drive.speed\na,10 mph\nb,20 mph\n", encoding="utf-8")
     command = ("run", "mine", *SHORT, "--no-vtk", "--out", "out")
+    line = clean(here, interrupted(*command, at="tyrefem.reports.campaign:run_campaign:1", folder=here))
+    assert line == "tyrefem: interrupted; nothing was written\n"
     second = "tyrefem.inputs.study:StudyData.case_study:4"
     line = clean(here, interrupted(*command, at=second, folder=here))
     assert line == "tyrefem: interrupted; finished cases are in out/campaign.csv\n"

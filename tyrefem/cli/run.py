@@ -134,7 +134,9 @@ def _campaign(campaign: CampaignData, folder: Path, pictures: bool, vtk: bool, r
         if pictures:
             result.report(place / "report.html")
 
-    with keeping(f"finished cases are in {folder / 'campaign.csv'}"):
+    table_file = folder / "campaign.csv"
+    kept = f"finished cases are in {table_file}"
+    with keeping(lambda: kept if table_file.exists() else "nothing was written"):
         with progress(study.name, len(campaign.cases)) as step:
             table = run_campaign(campaign, folder, lambda done, _all: step(done), each, parquet=parquet)
         if pictures:
