@@ -149,6 +149,21 @@ def test_a_body_that_does_not_touch_is_refused() -> None:
         RollingContact(body, np.ones(5), np.zeros((5, 2)), np.ones(5), [load]).solve(values=[0.0])
 
 
+def test_a_start_far_from_the_road_ends_at_the_contact() -> None:
+    """No point would touch at the first deflection: those that carried the load before close."""
+    count, normal, load = 41, 1e-3, 50.0
+    arms, touching = np.zeros((count, 3)), np.ones(count)
+    arms[:, 0] = 1.0
+    sought = Control(-touching, np.zeros((count, 2)), arms, load)
+    problem = RollingContact(
+        bristles(count, normal, 2e-3), positions(count, 0.05) ** 2, np.zeros((count, 2)), np.ones(count), [sought]
+    )
+    contact = problem.solve(values=[0.5])
+    again = problem.solve(contact, values=[-100.0])
+    np.testing.assert_allclose(again.forces, contact.forces, atol=1e-6)
+    assert again.controls == pytest.approx(contact.controls)
+
+
 def test_a_step_that_is_half_open_drags_a_bristle_by_half() -> None:
     """A bristle at the front of the contact has been dragged only since it touched."""
     count, step, slip, tangential = 5, 1.0, 1e-3, 2e-3

@@ -215,7 +215,11 @@ class _State:
     def states(self) -> States:
         limit = self.contact.friction * np.maximum(self.predicted, 0.0)
         slips = np.hypot(*self.pull.T) > limit
-        return np.where(self.predicted > 0, np.where(slips, SLIP, STICK), OPEN).astype(np.int8)
+        touches = self.predicted > 0
+        if not touches.any():
+            # A start too far from the road: the points that have a force close.
+            touches, slips = self.contact.body.may_touch & (self.forces[:, 0] > 0), np.zeros_like(slips)
+        return np.where(touches, np.where(slips, SLIP, STICK), OPEN).astype(np.int8)
 
     @functools.cached_property
     def residuals(self) -> tuple[Array, Array]:
