@@ -62,6 +62,16 @@ def test_what_is_kept_are_the_motions_of_extreme_ratio_conjugate_to_each_other()
     np.testing.assert_allclose(ratios[[0, 1, -2, -1]], RATIOS[[0, 1, -2, -1]], rtol=1e-2)
 
 
+def test_a_search_no_longer_than_what_is_kept_leaves_it() -> None:
+    none = ExtremeMotions.none(RATIOS.size)
+    first, second = np.random.default_rng(6).normal(size=(2, *SHAPE))
+    kept = none.after(search(first, none, 1e-6)[1])
+    _, directions = search(second, kept, 1e-4)
+    assert kept.after(directions[:KEPT]) is kept
+    assert kept.after(directions[: KEPT + 1]) is not kept or len(directions) <= KEPT
+    assert none.after([]) is none
+
+
 def test_forces_in_the_kept_motions_are_balanced_at_once() -> None:
     none = ExtremeMotions.none(RATIOS.size)
     _, directions = search(np.random.default_rng(4).normal(size=SHAPE), none, 1e-6)

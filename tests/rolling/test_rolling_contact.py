@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -162,6 +164,9 @@ def test_a_start_far_from_the_road_ends_at_the_contact() -> None:
     again = problem.solve(contact, values=[-100.0])
     np.testing.assert_allclose(again.forces, contact.forces, atol=1e-6)
     assert again.controls == pytest.approx(contact.controls)
+    rough = replace(problem, accuracy=1e-2).solve(contact, values=[-100.0])
+    assert rough.steps <= again.steps
+    assert rough.forces[:, 0].sum() == pytest.approx(load, rel=0.02)
 
 
 def test_a_step_that_is_half_open_drags_a_bristle_by_half() -> None:

@@ -17,8 +17,8 @@ INDEPENDENT = 1e-4
 
 @dataclass(frozen=True, eq=False)
 class Direction:
-    """A direction p of a search, K p and P^-1 p, P the preconditioner: fields (n, n_dofs) in single precision for
-    p K p = 1."""
+    """A direction p of a search, K p and P^-1 p, P the preconditioner, for p K p = 1: rows (n n_dofs) in single
+    precision, n = 0 times sqrt 2."""
 
     motion: Array
     forces: Array
@@ -26,9 +26,13 @@ class Direction:
 
     @classmethod
     def of(cls, motion: Array, forces: Array, led: Array, energy: float) -> Direction:
-        """Of fields with any ``energy`` p K p."""
-        size = 1 / np.sqrt(abs(energy) or 1.0)
-        return cls(*((size * part).astype(np.float32) for part in (motion, forces, led)))
+        """Of fields (n, n_dofs) with any ``energy`` p K p."""
+        size = np.float32(1 / np.sqrt(abs(energy) or 1.0))
+        return cls(*(size * _flat(part) for part in (motion, forces, led)))
+
+    def field(self, like: Array) -> Array:
+        """The motion (n, n_dofs)."""
+        return _field(self.motion, like)
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,13 +69,16 @@ class ExtremeMotions:
         return motion - _field(self.motions.T @ shares, motion), led - _field(self.led.T @ shares, motion)
 
     def after(self, directions: Sequence[Direction]) -> ExtremeMotions:
-        """The extreme motions among these and the directions of a search (Rayleigh and Ritz)."""
-        if not directions:
+        """The extreme motions among these and the directions of a search (Rayleigh and Ritz).
+
+        These themselves after a short search: its directions have little that they do not know.
+        """
+        if len(directions) <= min(len(self.motions), KEPT):
             return self
-        parts = []
-        for known, name in ((self.motions, "motion"), (self.forces, "forces"), (self.led, "led")):
-            parts.append(np.concatenate([known, [_flat(getattr(direction, name)) for direction in directions]]))
-        motions, forces, led = parts
+        motions, forces, led = (
+            np.stack([*known, *(getattr(direction, name) for direction in directions)])
+            for known, name in ((self.motions, "motion"), (self.forces, "forces"), (self.led, "led"))
+        )
         stiffness, other = ((motions @ part.T).astype(float) for part in (forces, led))
         energies, vectors = np.linalg.eigh((stiffness + stiffness.T) / 2)
         use = energies > INDEPENDENT * energies[-1]

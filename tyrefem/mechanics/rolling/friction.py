@@ -103,7 +103,7 @@ class RollingContact:
     body : compliance and way of the material.
     gaps : (k,) without forces, m. slips : (k, 2) rigid slip of a step, m.
     friction : (k,) coefficient mu. controls : numbers sought with the forces.
-    scale : a and b over the compliance of each point itself.
+    scale : a and b over the compliance of each point itself. accuracy : residual at which the search ends.
 
     Raises
     ------
@@ -116,6 +116,7 @@ class RollingContact:
     friction: Array
     controls: Sequence[Control] = ()
     scale: float = 1.0
+    accuracy: float = ACCURACY
 
     @functools.cached_property
     def _stiffness(self) -> tuple[Array, Array]:
@@ -245,7 +246,7 @@ class _State:
 
     @functools.cached_property
     def exact(self) -> bool:
-        return self.size < ACCURACY
+        return self.size < self.contact.accuracy
 
     def newton(self) -> tuple[Array, Array]:
         """Forces and controls after a full step of Newton's method.

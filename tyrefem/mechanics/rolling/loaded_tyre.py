@@ -191,7 +191,7 @@ class MotionFamily(Brief):
                 if not folding:
                     self._extreme[:] = [known.after(directions)]
                 return motion
-            if not folding.add(tangent, directions[-1].motion):
+            if not folding.add(tangent, directions[-1].field(motion)):
                 raise InputError("the tyre is not stable in its footprint: a small motion about it has no stiffness")
             tangent, known = folding.convex(self._tangent), ExtremeMotions.none(forces.size)
 

@@ -17,7 +17,7 @@ from tyrefem.mechanics.footprint.contact import Pressing
 from tyrefem.mechanics.footprint.road import Road
 from tyrefem.mechanics.rolling.coefficient_search import CoefficientSearch, FrictionLaw
 from tyrefem.mechanics.rolling.contact_body import ContactBody
-from tyrefem.mechanics.rolling.friction import Control, RollingContact
+from tyrefem.mechanics.rolling.friction import ACCURACY, Control, RollingContact
 from tyrefem.mechanics.rolling.loaded_compliance import LoadedCompliance
 from tyrefem.mechanics.rolling.pressed_shape import PressedShape
 from tyrefem.mechanics.rolling.rolled import TORQUE, RolledTyre
@@ -32,6 +32,8 @@ SETTLED, ROUNDS = 1e-7, 60
 FRONT_SETTLED, FRONT_ROUNDS = 0.05, 3
 #: Rounds in which forces on the loaded tyre are made known, and the change of forces at which a round ends.
 LOADED_ROUNDS, ON_THE_WAY = 12, 1e-3
+#: Residual of the contact in a round over the change of forces at which rounds end.
+CONTACT = 1e-2
 #: With a law of friction a few points may stick and slip in turn: after so many rounds the change of all forces
 #: together may be this.
 PATIENCE, SETTLED_LAW = 16, 5e-4
@@ -169,8 +171,9 @@ class SteadyRolling(Brief):
         if start is not None and not callable(self.friction):
             before = start.contact.forces
         front = None if start is None else start.before
+        exact = max(CONTACT * accuracy, ACCURACY)
         for number in range(ROUNDS):
-            rolled = self._solved(grid, motion, given, guess, last, search.of(grid, last), front)
+            rolled = self._solved(grid, motion, given, guess, last, search.of(grid, last), front, exact)
             wider = grid.around(rolled.contact.forces[:, 0] > 0, 1)
             guess, last = (rolled.deflection, rolled.travel), rolled
             if wider is not grid:
@@ -249,9 +252,10 @@ class SteadyRolling(Brief):
         last: RolledTyre | None,
         friction: Array,
         front: Array | None,
+        accuracy: float,
     ) -> RolledTyre:
         """Contact with the geometry of the ``last`` solution and coefficients of ``friction`` (k,); ``front``:
-        `RolledTyre.before`."""
+        `RolledTyre.before`; ``accuracy`` of the contact."""
         moved = np.zeros((grid.n_points, 3)) if last is None else last.moved
         gaps, normals = grid.gaps(moved, self.reach - (given.deflection or 0.0))
         axes = grid.road_axes(normals)
@@ -282,7 +286,7 @@ class SteadyRolling(Brief):
             controls.append(Control(none, per_radian, arms, given.torque, levers))
         if given.travel is None:
             values.append(guess[1])
-        problem = RollingContact(body, gaps, rigid, friction, controls)
+        problem = RollingContact(body, gaps, rigid, friction, controls, accuracy=accuracy)
         contact = problem.solve(None if last is None else last.contact, values)
         numbers = list(contact.controls)
         deflection = given.deflection if given.load is None else numbers.pop(0)
