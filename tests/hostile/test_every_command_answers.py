@@ -11,8 +11,10 @@ from every_command import Command, commands
 from jsonschema import Draft7Validator
 from jsonschema.exceptions import best_match
 
+import tyrefem as tf
 from tyrefem.cli import main
 from tyrefem.contracts import template
+from tyrefem.output.folder import checksum
 from tyrefem.schemas.answer_schema import answer_of, answers_schema, unknown_keys
 from tyrefem.schemas.answers import ANSWERS
 
@@ -35,16 +37,86 @@ def checked(command: str, text: str) -> None:
     assert without_words == [], f"{definition}: keys without words in tyrefem/schemas"
 
 
+#: Commands whose numbers come without time steps.
+WITHOUT_STEPS = ("press", "roll", "forces", "modes", "wear")
+#: Commands with random numbers, and their seeds here.
+SEEDS = {"blind": 1, "plan": 0, "sweep": 1, "rig layers": 1}
+
+
+def tells_what_made_it(place: Path, command: Command, line: list[str]) -> None:
+    """The folder names command, versions, inputs, mesh, tolerance and seed; its study runs again from there."""
+    told = json.loads((place / "summary.json").read_text(encoding="utf-8"))
+    assert told["command"] == command.words
+    assert told["arguments"] == line
+    assert {"tyrefem", "python", "numpy", "scipy", "scikit-fem"} <= set(told["versions"])
+    assert all(checksum(Path(file)) == kept for file, kept in told["files_read"].items())
+    read = {Path(file).name for file in told["files_read"]}
+    assert read >= {Path(word).name for word in command.arguments if word.endswith(".toml")}
+    assert told.get("random_seed") == SEEDS.get(command.words)
+    if not command.of_study:
+        return
+    assert told["input"]["mesh"]["size"] == "15 mm"
+    assert (told["mesh"]["mesher"], told["mesh"]["size_m"]) == ("mapped", 0.015)
+    steps = told.get("tolerance_K", told.get("numerics", {}).get("tolerance_K"))
+    assert (steps is None) == (command.words in WITHOUT_STEPS), steps
+    assert "study.toml" in told["files"]
+    study = tf.study(str(place / "study.toml"))
+    assert study.card.mesh.size == 0.015
+    assert study.section.regions == tf.study("study.toml").section.regions
+    loaded = tf.load(place)
+    assert loaded.study is not None
+
+
 @pytest.mark.parametrize("command", commands(), ids=lambda command: command.name)
 def test_json_is_one_object_with_the_documented_keys(
     command: Command, here: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
     assert {"as_json", "quiet"} <= command.options
-    code = main(command.line(command.out(here / "new"), "--json"))
+    place = command.out(here / "new")
+    line = command.line(place, "--json")
+    code = main(line)
     out, err = capfd.readouterr()
     assert code == 0, err
     checked(command.words, out)
     assert all(line.startswith("tyrefem: ") for line in err.splitlines())
+    if command.writes_folder:
+        tells_what_made_it(place, command, line)
+
+
+def test_the_study_of_a_folder_has_the_changes_and_stays_the_user_s(here: Path) -> None:
+    """The file that a command reads is not replaced, wherever the results go; another's study is refused."""
+    own = (here / "study.toml").read_bytes()
+    pressed = ["modes", "study.toml", "--highest", "0", "--no-pictures", "-q", "--set", "drive.pressure=60 psi"]
+    assert main([*pressed, "--out", "new"]) == 0
+    study = tf.load("new").study
+    assert study is not None
+    assert study.data["drive"]["pressure"] == "60 psi"
+    sweep = ["sweep", "study.toml", "--vary", "drive.speed=10 mph:20 mph:2", "--workers", "1", "--no-pictures", "-q"]
+    # It goes on from there, into its folder too: there it is the input.
+    kept = (here / "new" / "study.toml").read_bytes()
+    assert main(["modes", "new/study.toml", "--highest", "0", "--no-pictures", "-q", "--out", "new"]) == 0
+    assert (here / "new" / "study.toml").read_bytes() == kept
+    # A run without --out, in the folder of results: beside the one that the study stands in.
+    assert main([*pressed, "--out", "results/soft"]) == 0
+    assert main(["run", "results/soft/study.toml", "--no-pictures", "--no-vtk", "-q"]) == 0
+    run = tf.load("results/soft-run")
+    assert run.study is not None
+    assert run.study.data["drive"]["pressure"] == "60 psi"
+    # Beside the user's study.
+    assert main([*pressed, "--out", "."]) == 0
+    assert (here / "study.toml").read_bytes() == own
+    told = json.loads((here / "summary.json").read_text(encoding="utf-8"))
+    assert "study.toml" not in told["files"]
+    assert told["input"]["drive"]["pressure"] == "60 psi"
+    tf.study("study.toml").run().save(here)
+    assert main(["run", "study.toml", "--no-pictures", "--no-vtk", "-q", "--out", ".", "--force"]) == 0
+    assert main([*sweep, "--out", ".", "--force"]) == 0
+    assert (here / "study.toml").read_bytes() == own
+    # In a folder with a study that is not this one.
+    (here / "other").mkdir()
+    (here / "other" / "study.toml").write_bytes(own)
+    assert main([*pressed, "--out", "other"]) == 2
+    assert (here / "other" / "study.toml").read_bytes() == own
 
 
 @pytest.mark.parametrize("words", QUICK)

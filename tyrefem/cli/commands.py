@@ -163,8 +163,8 @@ def _command(arguments: list[str]) -> Any:
 def run_command_line(arguments: list[str] | None) -> tuple[object, int]:
     """Run a command line; return its last line, or None, and its exit code."""
     try:
-        with reading(), _warnings_shown():
-            given = sys.argv[1:] if arguments is None else arguments
+        given = sys.argv[1:] if arguments is None else arguments
+        with reading(given), _warnings_shown():
             _refuse_empty_place(given)
             code = _command(given)(args=given, prog_name=NAME, standalone_mode=False)
     except InputError as error:

@@ -58,6 +58,7 @@ def compare(
     """
     from tyrefem.api import study as load
     from tyrefem.compare.validation import NEEDS
+    from tyrefem.inputs.origin import study_names, write_origin
     from tyrefem.reports.comparison import FILES
     from tyrefem.variants.answer_store import PROGRESS, AnswerStore
 
@@ -66,8 +67,8 @@ def compare(
     warn(loaded.warnings)
     place = out or Path("results") / f"{loaded.name}-compare"
     read = [table] if table else [entry.table for entry in loaded.measured]
-    keeps = [f"{PROGRESS}/*/*.npz"]
-    with results_folder(place, "compare", FILES, inputs=read, force=force, keeps=keeps) as folder:
+    names, keeps = (*FILES, *study_names(loaded, place)), [f"{PROGRESS}/*/*.npz"]
+    with results_folder(place, "compare", names, inputs=read, force=force, keeps=keeps) as folder:
         store = AnswerStore(folder / PROGRESS)
         with (
             keeping(lambda: store.kept),
@@ -86,6 +87,7 @@ def compare(
                 store=store,
                 begin=notify,
             )
+            write_origin(loaded, folder, tolerance=loaded.tolerance)
             comparison.save(folder)
         store.clear()
     answer_with(comparison.to_dict())

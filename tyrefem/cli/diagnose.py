@@ -70,6 +70,7 @@ def diagnose(
     from tyrefem.diagnose.options import STRATEGIES
     from tyrefem.diagnose.workflow import NEEDS
     from tyrefem.effects import use_effects
+    from tyrefem.inputs.origin import study_names, write_origin
     from tyrefem.reports.diagnosis import FILES
     from tyrefem.variants.answer_store import PROGRESS
 
@@ -82,7 +83,8 @@ def diagnose(
     warn(loaded.warnings)
     place = out or Path("results") / f"{loaded.name}-diagnosis"
     read = [table] if table else [entry.table for entry in loaded.measured]
-    with results_folder(place, "diagnose", FILES, inputs=read, force=force, keeps=[f"{PROGRESS}*/*/*.npz"]) as folder:
+    names, keeps = (*FILES, *study_names(loaded, place)), [f"{PROGRESS}*/*/*.npz"]
+    with results_folder(place, "diagnose", names, inputs=read, force=force, keeps=keeps) as folder:
         store = ProgressStore(folder / PROGRESS)
         with keeping(lambda: store.kept), stages() as tick:
             tick("reading", 0, 0)
@@ -100,6 +102,8 @@ def diagnose(
                 calibration=calibration,
             )
             tick("drawing", 0, 0)
+            used = [candidate.name for candidate in diagnosis.candidates]
+            write_origin(loaded, folder, used, tolerance=loaded.tolerance)
             page = diagnosis.save(folder)
         store.clear()
     answer_with(diagnosis.to_dict())

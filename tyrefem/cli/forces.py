@@ -73,6 +73,7 @@ def forces(
 ) -> None:
     """Forces over load, slip, slip angle and camber; a Magic Formula that fits them, as a .tir file."""
     from tyrefem.api import study as load_study
+    from tyrefem.inputs.origin import study_names, write_origin
     from tyrefem.mechanics.rolling.force_table import tyre_forces
     from tyrefem.mechanics.rolling.roll import NEEDS
     from tyrefem.reports.forces import FILES, summary, write_files
@@ -87,8 +88,9 @@ def forces(
     loaded = load_study(study, settings(changes), case)
     NEEDS.check(loaded)
     warn(loaded.warnings)
+    place = out or Path("results") / f"{loaded.name}-forces"
     with (
-        results_folder(out or Path("results") / f"{loaded.name}-forces", "forces", FILES, force=force) as folder,
+        results_folder(place, "forces", (*FILES, *study_names(loaded, place)), force=force) as folder,
         stages() as tick,
     ):
         tick(f"{loaded.name}: inflated and pressed", 0.0, 0.0)
@@ -96,6 +98,7 @@ def forces(
             result = tyre_forces(
                 loaded, progress=lambda done, total: tick(f"{loaded.name}: rolling", done, total), **given
             )
+            write_origin(loaded, folder)
             write_files(result, folder, pictures=pictures)
         except InputError as error:
             raise _placed(error, given, loaded) from None

@@ -57,6 +57,7 @@ def isolability(
     from tyrefem.diagnose.layout.calibration import calibrated
     from tyrefem.diagnose.layout.isolability import NEEDS, planned_sensitivities
     from tyrefem.diagnose.layout.isolability import isolability as found_by
+    from tyrefem.inputs.origin import study_names, write_origin
     from tyrefem.output import atomic_folder, jsonable
     from tyrefem.reports.calibration import save
     from tyrefem.reports.isolability import picture
@@ -67,9 +68,8 @@ def isolability(
     warn(loaded.warnings)
     count = workers or min(os.cpu_count() or 1, 4)
     place = out or Path("results") / f"{loaded.name}-isolability"
-    with results_folder(
-        place, "isolability", FILES, force=force, keeps=["cases/*.json", f"{PROGRESS}/*/*.npz"]
-    ) as folder:
+    names, keeps = (*FILES, *study_names(loaded, place)), ["cases/*.json", f"{PROGRESS}/*/*.npz"]
+    with results_folder(place, "isolability", names, force=force, keeps=keeps) as folder:
         store = ProgressStore(folder / PROGRESS)
         with keeping(lambda: store.kept):
             with progress(f"{loaded.name}: sensitivities", 1.0) as step:
@@ -84,6 +84,13 @@ def isolability(
                     if fitted:
                         by_fits = fitted_cases(loaded, known, cases, seed, folder / CASES, count, tick)
                     calibration = calibrated(loaded, known, cases, seed, tick, by_fits)
+            write_origin(
+                loaded,
+                folder,
+                list(result.plugins),
+                tolerance=loaded.tolerance,
+                random_seed=None if cases is None else seed,
+            )
             with atomic_folder(folder) as temporary:
                 result.table.to_csv(temporary / "isolability.csv", index=False, lineterminator="\n")
                 text = json.dumps(jsonable(result.to_dict()), indent=1, ensure_ascii=False, allow_nan=False)

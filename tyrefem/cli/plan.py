@@ -53,6 +53,8 @@ def plan(
     from tyrefem.api import study as load
     from tyrefem.diagnose.forward.evaluations import ProgressStore
     from tyrefem.diagnose.words.set_posteriors import POSTERIOR
+    from tyrefem.inputs.origin import study_names, write_origin
+    from tyrefem.plan.information import SEED
     from tyrefem.plan.workflow import NEEDS
     from tyrefem.reports.plan import FILES
     from tyrefem.variants.answer_store import PROGRESS
@@ -65,7 +67,8 @@ def plan(
     warn(loaded.warnings)
     place = out or Path("results") / f"{loaded.name}-plan"
     read = [] if after is None else [after / POSTERIOR] if is_folder else [after]
-    with results_folder(place, "plan", FILES, inputs=read, force=force, keeps=[f"{PROGRESS}*/*/*.npz"]) as folder:
+    names, keeps = (*FILES, *study_names(loaded, place)), [f"{PROGRESS}*/*/*.npz"]
+    with results_folder(place, "plan", names, inputs=read, force=force, keeps=keeps) as folder:
         store = ProgressStore(folder / PROGRESS)
         with keeping(lambda: store.kept), stages() as tick:
             table = after is not None and not is_folder
@@ -78,6 +81,7 @@ def plan(
                 rename=renamed(rename) if table else None,
             )
             tick("drawing", 0, 0)
+            write_origin(loaded, folder, result.to_dict()["plugins"], tolerance=loaded.tolerance, random_seed=SEED)
             page = result.save(folder)
         store.clear()
     answer_with(result.to_dict())

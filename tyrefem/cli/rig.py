@@ -142,7 +142,7 @@ def layers(
     warn(warning.within(file=file) for warning in card.warnings())
     tests = rigs.read(card, tables_of(card, file, tables)) if tables else ()
     counts = range(1, min(most, len(card.layers)) + 1)
-    place = out or Path("results") / f"rig-{_name(file)}-layers"
+    place, drawn = out or Path("results") / f"rig-{_name(file)}-layers", None if tests else seed
     with results_folder(place, "rig layers", LAYER_FILES, force=force) as folder:
         finished: dict[int, Any] = {}
         try:
@@ -157,10 +157,12 @@ def layers(
             if not finished:
                 raise
             with interruption_delayed():
-                save_layer_table(LayerStudy(tuple(finished), tuple(finished.values())), folder, complete=False)
+                save_layer_table(
+                    LayerStudy(tuple(finished), tuple(finished.values())), folder, complete=False, seed=drawn
+                )
             raise Interrupted(f"{len(finished)} of {len(counts)} fits are in {folder / 'layers.csv'}") from None
         comparison = LayerStudy(tuple(finished), tuple(finished.values()))
-        save_layers(comparison, folder)
+        save_layers(comparison, folder, seed=drawn)
     answer_with({"rows": comparison.table().to_dict("records")})
     say(comparison.table().to_string(index=False, float_format="%.3g"))
     say(f"results in {folder}")

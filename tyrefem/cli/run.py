@@ -48,17 +48,24 @@ def run(
 
     values = settings(changes)
     loaded = load(study, values, case)
-    place = out or Path("results") / loaded.name
+    place = out or _usual_place(loaded)
     tables = [entry.table for entry in loaded.measured]
     if loaded.is_campaign:
         campaign = loaded.campaign()
         _refuse_overlaid(campaign, values)
-        with results_folder(place, "run", campaign_files(campaign), inputs=tables, force=force) as folder:
+        with results_folder(place, "run", campaign_files(campaign, place), inputs=tables, force=force) as folder:
             _campaign(campaign, folder, pictures, vtk, revolved, parquet)
     else:
-        with results_folder(place, "run", run_files(loaded), inputs=tables, force=force) as folder:
+        with results_folder(place, "run", run_files(loaded, place), inputs=tables, force=force) as folder:
             _single(loaded, folder, pictures, vtk, revolved, parquet)
         answer_with(folder / "summary.json")
+
+
+def _usual_place(study: Study) -> Path:
+    """The folder of the results without ``--out``: ``results/STUDY``, but not the one that the study stands in."""
+    place = Path("results") / study.name
+    taken = study.folder is not None and place.resolve() == study.folder.resolve()
+    return place.with_name(f"{study.name}-run") if taken else place
 
 
 def _single(study: Study, folder: Path, pictures: bool, vtk: bool, revolved: bool, parquet: bool) -> None:

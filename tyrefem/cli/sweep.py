@@ -202,7 +202,7 @@ def sweep(
     warn(warnings_of(wanted.study))
     place = out or Path("results") / f"{name}-sweep"
     with (
-        results_folder(place, "sweep", file_names(), force=force, keeps=kept_names()) as folder,
+        results_folder(place, "sweep", file_names(wanted.study, place), force=force, keeps=kept_names()) as folder,
         stages() as tick,
     ):
         kept = f"finished variants are in {folder}; the same command resumes from there"

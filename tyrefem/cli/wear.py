@@ -63,6 +63,7 @@ def wear(
     Slip is that of the options. Without them, a study with boundaries.sliding = 'rolling' wears by its drive.
     """
     from tyrefem.api import study as load
+    from tyrefem.inputs.origin import study_names, write_study_beside
     from tyrefem.mechanics.rolling.roll import NEEDS, roll
     from tyrefem.reports.wear import FILES, words, write_files
     from tyrefem.wear.drive_wear import drive_wear
@@ -82,7 +83,8 @@ def wear(
     of_drive = loaded.card.boundaries.sliding.rolls and not given
     given = {**DEFAULTS, **given}
     warn(loaded.warnings)
-    with results_folder(out or Path("results") / f"{loaded.name}-wear", "wear", FILES, force=force) as folder:
+    place = out or Path("results") / f"{loaded.name}-wear"
+    with results_folder(place, "wear", (*FILES, *study_names(loaded, place)), force=force) as folder:
         try:
             with progress(f"{loaded.name}: rolling"):
                 rolled = None if of_drive else roll(loaded, **given)
@@ -90,6 +92,7 @@ def wear(
             worn = worn_section(loaded, worn_off, kilometres) if distance is not None else None
         except InputError as error:
             raise placed(error, {name: option for name, (option, _) in OPTIONS.items()}, given, loaded) from None
+        write_study_beside(loaded, folder)
         write_files(loaded, rolled, worn_off, folder, worn, pictures=pictures)
     answer_with(folder / "summary.json")
     say(words(loaded, rolled, worn_off))

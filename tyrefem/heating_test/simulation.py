@@ -34,6 +34,7 @@ class Simulation(Brief):
     ----------
     card, file : the rig. values : parameters of the simulation. runs : readings by run.
     twin, fields : the forward model, and nodal temperatures (computed times, unknowns) by run. clock : their times.
+    seed : of the instruments' noise; None: no noise.
     """
 
     card: RigCard
@@ -43,6 +44,7 @@ class Simulation(Brief):
     twin: Twin
     clock: Clock
     fields: Mapping[str, Array]
+    seed: int | None = None
 
     def _title(self) -> str:
         return f"of {self.card.title}"
@@ -132,4 +134,4 @@ def simulate(
         runs[name] = MeasuredRun(name, times, frame, None, (comment,))
         if progress:
             progress()
-    return Simulation(card, file, numbers, runs, twin, clock, kept)
+    return Simulation(card, file, numbers, runs, twin, clock, kept, seed)

@@ -11,7 +11,7 @@ import os
 import platform
 import secrets
 import shutil
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
@@ -53,6 +53,8 @@ _NO_GUARD = WriteGuard()
 #: The guard of the running command, and the files that it has read: one command at a time in a process.
 _guard = _NO_GUARD
 _read: dict[Path, None] = {}
+#: The words of the command line of the running command.
+_arguments: tuple[str, ...] = ()
 
 
 #: Folders of complete files, in the order of writing; the message of an interruption names the last.
@@ -75,14 +77,20 @@ def guarded(guard: WriteGuard | None) -> Iterator[None]:
 
 
 @contextmanager
-def reading() -> Iterator[None]:
-    """Record the files read in this block as inputs of one command, and the folders that it writes for `written_to`."""
-    before = dict(_read)
+def reading(arguments: Sequence[str] = ()) -> Iterator[None]:
+    """Record the files read in this block as inputs of one command, and the folders that it writes for `written_to`.
+
+    ``arguments``: the words of its command line.
+    """
+    global _arguments
+    before, words = dict(_read), _arguments
     _read.clear()
     _written.clear()
+    _arguments = tuple(arguments)
     try:
         yield
     finally:
+        _arguments = words
         _read.clear()
         _read.update(before)
 
@@ -95,6 +103,11 @@ def note_input(path: str | Path) -> None:
 def inputs_read() -> tuple[Path, ...]:
     """The files that this command has read so far."""
     return tuple(_read)
+
+
+def command_arguments() -> tuple[str, ...]:
+    """The words of the running command's line, without the name of the program; none from Python."""
+    return _arguments
 
 
 def written_to() -> Path | None:

@@ -23,16 +23,19 @@ from tyrefem.output import (
     SUMMARY,
     TEMPORARY,
     WriteGuard,
+    command_arguments,
     guarded,
     inputs_read,
     place_of_output,
     remove_temporary,
+    versions,
     write_json,
 )
 
 #: Keys of ``summary.json`` that belong to the folder, not to the result.
 COMMAND, COMPLETE, FILES, CHECKSUMS, WRITING = "command", "complete", "files", "checksums", "writing"
-BOOKKEEPING = (COMMAND, COMPLETE, FILES, CHECKSUMS, WRITING)
+ARGUMENTS, FILES_READ, VERSIONS = "arguments", "files_read", "versions"
+BOOKKEEPING = (COMMAND, ARGUMENTS, FILES_READ, COMPLETE, FILES, CHECKSUMS, WRITING)
 #: Largest number of foreign files in an error.
 NAMED = 5
 
@@ -143,6 +146,7 @@ class ResultsFolder(WriteGuard):
         self._earlier = _summary_content(self._earlier_summary_text)
         self._written: dict[str, str] = {}
         self._being_written: list[str] = []
+        self._read: dict[str, str] = {}
         self._summary: dict[str, Any] = {}
         for parent in {Path(name).parent.as_posix() for name in self.names}:
             for place in self.folder.glob(parent) if parent != "." else [self.folder]:
@@ -240,10 +244,14 @@ class ResultsFolder(WriteGuard):
         self._refuse_input(self.folder / SUMMARY)
         sums = {**self._listed, **self._written}
         sums = {name: sums[name] for name in sorted(sums) if name != SUMMARY and (self.folder / name).is_file()}
-        answer = self._summary or {key: entry for key, entry in self._earlier.items() if key not in BOOKKEEPING}
+        # Until there are new results, the earlier ones stand with what made them.
+        earlier = {key: entry for key, entry in self._earlier.items() if key not in BOOKKEEPING}
         data = {
-            **answer,
+            VERSIONS: versions(),
+            **(self._summary or ({} if complete else earlier)),
             COMMAND: self.command,
+            ARGUMENTS: list(command_arguments()),
+            FILES_READ: self._sums_of_inputs(),
             COMPLETE: complete,
             FILES: list(sums),
             CHECKSUMS: sums,
@@ -251,6 +259,15 @@ class ResultsFolder(WriteGuard):
         }
         with guarded(None):
             write_json(data, self.folder / SUMMARY)
+
+    def _sums_of_inputs(self) -> dict[str, str]:
+        """Checksums of the files that the command has read, by path; each is read once."""
+        for file in (*self._inputs, *inputs_read()):
+            place = os.path.abspath(file)
+            if place not in self._read:
+                with suppress(OSError):
+                    self._read[place] = checksum(Path(place))
+        return dict(sorted(self._read.items()))
 
     # -- what is whose -----------------------------------------------------------------------------------------------
 

@@ -16,6 +16,8 @@ Array = NDArray[np.float64]
 NAMED = DEFAULT.named_probability
 #: Directions of the data with less information than this are left out, nats.
 NEGLIGIBLE = 1e-4
+#: Seed of the sampled data.
+SEED = 0
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,7 +73,7 @@ def entropy(probabilities: Array) -> float:
     return float(-(p * np.log(p)).sum())
 
 
-def information(expected: Gaussians, draws: int, seed: int = 0) -> Information:
+def information(expected: Gaussians, draws: int, seed: int = SEED) -> Information:
     """Mutual information of set and data, I = sum_k p_k E_k[ln p(k | y) - ln p_k], by sampled data y of every set.
 
     The probabilities p(k | y) are exact for the Gaussians, so the samples are not nested: the estimate has no bias, and

@@ -14,9 +14,8 @@ from numpy.typing import NDArray
 
 from tyrefem.errors import InputError
 from tyrefem.estimates import work as estimate
+from tyrefem.inputs.origin import origin
 from tyrefem.inputs.study import StudyData
-from tyrefem.inputs.study_plugins import plugin_summary
-from tyrefem.output import versions
 from tyrefem.realtime.export import arrays_of, outputs_of, write
 from tyrefem.realtime.inputs import NAMES, Box, BoxDrive, box_of, random_drive, steady
 from tyrefem.realtime.settings import ExportSettings
@@ -312,16 +311,12 @@ class _Training:
         return start
 
     def about(self) -> dict[str, Any]:
-        """Data about the model for the file: study, box, outputs, start values."""
+        """Data about the model for the file: what made it, box, outputs, start values."""
         balance = reduced_balance(self.reduced, self.base)
-        return {
-            "study": self.study.name,
-            "title": self.study.title,
+        return origin(self.study, tolerance=self.study.tolerance, random_seed=self.settings.seed) | {
             "box": {name: list(self.box.ranges[name]) for name in NAMES},
             "outputs": outputs_of(self.study, balance),
             "initial": self.study.card.drive.initial,
             "start": self._start(),
             "modes": self.reduced.size,
-            "versions": versions(),
-            **plugin_summary(self.study),
         }

@@ -8,12 +8,11 @@ from glob import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tyrefem.inputs.study_plugins import plugin_summary
+from tyrefem.inputs.origin import origin, study_names, write_study_beside
 from tyrefem.interruption import interruption_delayed
 from tyrefem.output import atomic_path, versions, write_json
 from tyrefem.reports.figures.style import FONT, TITLE, add_axes, figure, line_style, plain, png, short, tidy, title
 from tyrefem.reports.run_files import run_files, write_tables
-from tyrefem.reports.sweep_files import STUDY, write_study_beside
 from tyrefem.reports.vtk import file_names
 from tyrefem.sweep.campaign import CampaignData, row
 
@@ -28,11 +27,16 @@ MOST_NAMES = 60
 MOST_TYRES = 8
 
 
-def campaign_files(campaign: CampaignData) -> list[str]:
+def campaign_files(campaign: CampaignData, folder: Path) -> list[str]:
     """The files that `run_campaign` and its report may write, relative to their folder."""
-    cases = [f"cases/{escape(case.name)}/{name}" for case in campaign.cases for name in run_files(campaign.study)]
+    cases = [
+        f"cases/{escape(case.name)}/{name}"
+        for case in campaign.cases
+        for name in run_files(campaign.study, folder / "cases" / case.name)
+    ]
     vtk = [f"cases/{escape(case.name)}/vtk/{name}" for case in campaign.cases for name in file_names(case.name)]
-    return ["campaign.csv", STUDY, "report.html", *(name for name in cases if "/vtk/" not in name), *vtk,
+    whole = ["campaign.csv", *study_names(campaign.study, folder), "report.html"]
+    return [*whole, *(name for name in cases if "/vtk/" not in name), *vtk,
             *(f"cases/{escape(case.name)}/summary.json" for case in campaign.cases)]  # fmt: skip
 
 
@@ -81,18 +85,11 @@ def _write_table(campaign: CampaignData, rows: list[dict[str, Any]], folder: Pat
 
 
 def _summary(campaign: CampaignData, table: pd.DataFrame, complete: bool) -> dict[str, Any]:
-    return {
-        "study": campaign.study.name,
-        "title": campaign.study.title,
+    study = campaign.study
+    return origin(study, [dict(case.changes) for case in campaign.cases], tolerance=study.tolerance) | {
         "complete": complete,
         "cases": table.to_dict("records"),
         "failed": [entry["case"] for entry in table.to_dict("records") if entry.get("failure")],
-        "tolerance_K": campaign.study.tolerance,
-        "mesh": campaign.study.card.mesh.model_dump(),
-        "versions": versions(),
-        **plugin_summary(campaign.study, [dict(case.changes) for case in campaign.cases]),
-        "random_seed": None,
-        "input": dict(campaign.study.data),
     }
 
 

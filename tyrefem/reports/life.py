@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.fatigue.places import FailurePlace, first_places
-from tyrefem.inputs.study_plugins import plugin_summary
+from tyrefem.inputs.origin import mesh_summary, origin
 from tyrefem.interruption import keeping
-from tyrefem.output import atomic_folder, versions, write_json
+from tyrefem.output import atomic_folder, write_json
 from tyrefem.reports.figures.style import png
 from tyrefem.reports.vtu import VtuFile
 
@@ -61,9 +61,8 @@ def summary(life: LifeData, shifts: Sequence[LifeShift] = ()) -> dict[str, Any]:
     drift = life.drift / np.maximum(life.peak, 1e-300)
     phases = [phase.name for phase in life.study.card.drive.phases]
     first = life.first, int(life.typical[life.first])
-    return {
-        "study": life.study.name,
-        "title": life.study.title,
+    mesh = {"elements": len(life.km), "nodes_of_nine_node_elements": life.rings.n_nodes}
+    return origin(life.study, tolerance=life.study.tolerance) | {
         "about": ABOUT,
         "sum": MINER,
         "shortest_km": life.shortest,
@@ -78,9 +77,7 @@ def summary(life: LifeData, shifts: Sequence[LifeShift] = ()) -> dict[str, Any]:
         "places": [place.row() for place in places],
         "sensitivity": [_shift(shift) for shift in shifts],
         "cards": {region: _card(life, region) for region in life.regions},
-        "mesh": {"elements": len(life.km), "nodes_of_nine_node_elements": life.rings.n_nodes},
-        "versions": versions(),
-        **plugin_summary(life.study),
+        "mesh": mesh_summary(life.study) | mesh,
     }
 
 

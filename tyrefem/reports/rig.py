@@ -75,6 +75,7 @@ def save(identification: IdentificationData, folder: str | Path, base: str | Seq
         put_json(place / "rig.json", data)
         short = (
             "rig",
+            "file",
             "determined",
             "not_determined",
             "poorly_determined",
@@ -83,8 +84,9 @@ def save(identification: IdentificationData, folder: str | Path, base: str | Seq
             "estimates",
             "materials",
             "versions",
+            "plugins",
         )
-        put_json(place / "summary.json", {key: data[key] for key in short})
+        put_json(place / "summary.json", {key: data[key] for key in short} | {"random_seed": None})
         identification.table.to_csv(place / "estimates.csv", index=False)
         _residuals(identification).to_csv(place / "residuals.csv", index=False)
         if cards:
@@ -149,6 +151,7 @@ def write_simulation(done: Simulation, folder: Path) -> Path:
         "words": list(done.words),
         "versions": versions(),
         "plugins": rows_of_plugins(named_plugins(done.card.model_dump())),
+        "random_seed": done.seed,
     }
     with atomic_folder(folder) as place:
         for name, run in done.runs.items():
@@ -166,23 +169,24 @@ def _at_switch(done: Simulation, name: str) -> list[float]:
     return [float(value) for value in seen[done.clock.heating.size - 1]]
 
 
-def save_layers(done: LayerStudy, folder: Path) -> Path:
-    """Write ``layers.csv``, ``layers.png`` and ``summary.json``."""
-    save_layer_table(done, folder)
+def save_layers(done: LayerStudy, folder: Path, *, seed: int | None = None) -> Path:
+    """Write ``layers.csv``, ``layers.png`` and ``summary.json``; ``seed``: of simulated readings."""
+    save_layer_table(done, folder, seed=seed)
     with keeping(f"{folder} has the table, but not its picture"), atomic_folder(folder) as place:
         (place / "layers.png").write_bytes(png(layers_figure(done)))
     return folder
 
 
-def save_layer_table(done: LayerStudy, folder: Path, *, complete: bool = True) -> Path:
-    """Write ``layers.csv`` and ``summary.json``; ``complete``: the table has all fits."""
+def save_layer_table(done: LayerStudy, folder: Path, *, complete: bool = True, seed: int | None = None) -> Path:
+    """Write ``layers.csv`` and ``summary.json``; ``complete``: the table has all fits. ``seed``: of simulated readings;
+    None: measured ones."""
     table = done.table()
     with atomic_folder(folder) as place:
         table.to_csv(place / "layers.csv", index=False)
         used = {plugin for fit in done.fits for plugin in named_plugins(fit.card.model_dump())}
         rows = {
             "complete": complete, "rows": table.to_dict("records"), "versions": versions(),
-            "plugins": rows_of_plugins(used),
+            "plugins": rows_of_plugins(used), "random_seed": seed,
         }  # fmt: skip
         put_json(place / "summary.json", rows)
     return folder

@@ -6,6 +6,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from tyrefem.inputs.origin import study_names, write_study_beside
 from tyrefem.inputs.published import PublishedComparison, compared, of_footprint
 from tyrefem.inputs.study_plugins import plugin_summary
 from tyrefem.output import versions, write_json
@@ -135,14 +136,15 @@ def _hottest_region(result: ResultData) -> str:
     return max(peaks, key=lambda region: peaks[region].temperature)
 
 
-def run_files(study: StudyData) -> list[str]:
+def run_files(study: StudyData, folder: Path) -> list[str]:
     """The files that a run of ``study`` may write, relative to its folder."""
     from tyrefem.reports.figures import PICTURES
     from tyrefem.reports.vtk import file_names
     from tyrefem.simulation.stored_result import FILE
 
     columns = [name.replace(".csv", ".parquet") for name in TABLES]
-    return [*TABLES, *columns, FILE, "study.toml", "report.html", *(f"pictures/{name}" for name in PICTURES),
+    whole = [*TABLES, *columns, FILE, *study_names(study, folder), "report.html"]
+    return [*whole, *(f"pictures/{name}" for name in PICTURES),
             *(f"vtk/{name}" for name in file_names(study.name))]  # fmt: skip
 
 
@@ -179,5 +181,5 @@ def write_tables(result: ResultData, folder: Path, *, parquet: bool = False) -> 
                 whole = result.readings.assign(**{"contained-air_pressure_Pa": result.gas_pressure})
             write_parquet(whole, (folder / name).with_suffix(".parquet"))
     write_result(result, folder / FILE)
-    result.study.save(folder / "study.toml")
+    write_study_beside(result.study, folder)
     return write_json(summary(result), folder / "summary.json")

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tyrefem.brief import counted
-from tyrefem.inputs.study_plugins import plugin_summary
-from tyrefem.output import atomic_path, versions, write_json
+from tyrefem.inputs.origin import origin, study_names, write_study_beside
+from tyrefem.output import atomic_path, write_json
 from tyrefem.reports.parquet import with_units, write_parquet
 from tyrefem.reports.sweep import FILES as LIST
 from tyrefem.reports.sweep import clear, earlier, write_page
@@ -27,8 +27,6 @@ if TYPE_CHECKING:
     from tyrefem.sweep.design import DesignData
 
 PAGE = "sweep.html"
-#: The study, with the changes of the sweep's file: a `tyrefem.load` of the folder reads it.
-STUDY = "study.toml"
 
 
 def part_names() -> tuple[str, ...]:
@@ -36,14 +34,14 @@ def part_names() -> tuple[str, ...]:
     return ("sweep", "pareto", "indices", "optimum", *sweep_questions())
 
 
-def file_names() -> tuple[str, ...]:
-    """The files that `save` may write."""
+def file_names(study: StudyData, folder: Path) -> tuple[str, ...]:
+    """The files that `save` may write into a folder."""
     pictures = ("map-*.png", "curves-*.png", "bars-*.png", "pareto*.png", "indices-*.png", "optimum.png",
                 *(f"{key}*.png" for key in sweep_questions()))  # fmt: skip
     return (
         *(f"{name}.{kind}" for name in part_names() for kind in ("csv", "parquet")),
         "errors.csv",
-        STUDY,
+        *study_names(study, folder),
         PAGE,
         *(f"pictures/{name}" for name in pictures),
         *(f"{VARIANT_FILES}/*/*.{kind}" for kind in ("pvd", "vtu", "py")),
@@ -76,15 +74,6 @@ def save(design: DesignData, folder: Path, *, pictures: bool = True) -> dict[str
     summary[LIST] = clear(folder, before, summary, written)
     write_json(summary, folder / "summary.json")
     return summary
-
-
-def write_study_beside(study: StudyData, folder: Path) -> list[str]:
-    """Write the study of a sweep or campaign into its folder, unless its file stands there; return the name."""
-    target = folder / STUDY
-    if study.file is not None and target.resolve() == study.file.resolve():
-        return []
-    study.save(target)
-    return [STUDY]
 
 
 def write_table(table: pd.DataFrame, folder: Path, name: str) -> list[str]:
@@ -139,20 +128,21 @@ def write_errors(sweep: Sweep, folder: Path) -> list[str]:
 def summarised(design: DesignData) -> dict[str, Any]:
     """Contents of `summary.json`: sample, computation of the variants, every answer, versions, sentences."""
     study, card = design.study, design.card
-    return {
-        "study": study.name,
+    made_of = origin(
+        study,
+        _variants(design),
+        [part.name for part in design.parts],
+        tolerance=study.tolerance,
+        random_seed=card.seed,
+    )
+    return made_of | {
         "title": card.title or study.title,
         "complete": not design.interrupted and (design.swept is None or design.swept.complete),
         "asked": card.model_dump(exclude_none=True, by_alias=True),
         **({} if design.swept is None else {"sample": sample_summary(design.swept)}),
         **{part.name: part.to_dict() for part in design.parts},
         "failures": design.failed,
-        "tolerance_K": study.tolerance,
-        "mesh": study.card.mesh.model_dump(),
-        "versions": versions() | {"SALib": importlib.metadata.version("SALib")},
-        **plugin_summary(study, _variants(design), [part.name for part in design.parts]),
-        "random_seed": card.seed,
-        "input": dict(study.data),
+        "versions": made_of["versions"] | {"SALib": importlib.metadata.version("SALib")},
         "words": text_lines(design),
     }
 

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tyrefem.inputs.study_plugins import plugin_summary
-from tyrefem.output import atomic_folder, versions, write_json
+from tyrefem.inputs.origin import origin
+from tyrefem.output import atomic_folder, write_json
 from tyrefem.quantity import written
 from tyrefem.reports.figures.style import FONT, add_axes, figure, line_style, png, tidy, title
 from tyrefem.wear.drive_wear import DriveWear
@@ -73,17 +73,13 @@ def rings_table(wear: RingWear) -> Any:
 def summary(study: StudyData, rolled: RolledStudy | None, wear: RingWear) -> dict[str, Any]:
     """Contents of ``summary.json``."""
     density = study.materials["tread"].density.at(study.card.drive.initial)
-    return {
-        "study": study.name,
-        "title": study.title,
+    return origin(study) | {
         "about": ABOUT,
         **(_drive(wear) if rolled is None else _state(rolled)),
         "mean_wear_mm_per_1000_km": wear.mean / MILLIMETRES,
         "most_wear_mm_per_1000_km": float(wear.depth_per_km.max()) / MILLIMETRES,
         "mass_mg_per_km": wear.volume_per_km * density * 1e6,
         "card": wear.table.model_dump(),
-        "versions": versions(),
-        **plugin_summary(study),
     }
 
 

@@ -17,16 +17,18 @@ _VERSIONS = {
 }
 _FOLDER = {
     "command": "text: The command that wrote the folder.",
+    "arguments": "list: The words of its command line.",
+    "files_read": "table: File that it read -> checksum of its content.",
     "complete": "truth: False after an interruption.",
     "files": "list: Files in the folder.",
     "checksums": "table: File -> checksum of its content.",
     "writing*": "list: Files that were being written.",
 }
-_AGAIN = {
-    "wall_time_s": "number: Time of the computation.",
+_INPUT = {
     "random_seed": "integer?: Seed; null where nothing is random.",
     "input": "written: The study with all changes; keys as in schemas/study.json.",
 }
+_AGAIN = {"wall_time_s": "number: Time of the computation.", **_INPUT}
 _WHEEL = {
     "pressure_Pa": "number: Gauge pressure.",
     "drum_diameter_m": "number?: Diameter of the drum; null on a flat road.",
@@ -220,7 +222,8 @@ ANSWERS: dict[str, Keys] = {
         "angular_speed_rad_s*": "number: Rotation.",
     },
     "life": {
-        **_STUDY, **_FOLDER, **_VERSIONS, "about": "text: What a life is.", "sum": "text: How the phases are summed.",
+        **_STUDY, **_FOLDER, **_VERSIONS, **_INPUT, "about": "text: What a life is.",
+        "sum": "text: How the phases are summed.",
         "shortest_km": "number?: Shortest life, mean of a place.", "shortest_point_km": "number?: Shortest at a point.",
         "distance_of_the_drive_km": "number: Length of the drive.",
         "temperatures": "text: Temperatures of the life.", "motion": "text: Motion of the footprint.",
@@ -231,10 +234,11 @@ ANSWERS: dict[str, Keys] = {
         "places": "list: Places that fail first, with plane, energy and temperature.",
         "sensitivity": "list: Shortest life for other inputs.",
         "cards": "written: Region -> its [fatigue] in SI; keys as in schemas/material.json.",
-        "mesh": "table: Mechanical mesh.",
+        "mesh": "table: Mesher and size; counts of the mechanical mesh.",
+        "tolerance_K": "number: Of the time steps of the run.",
     },
     "wear": {
-        **_STUDY, **_FOLDER, **_VERSIONS, "about": "text: What is computed.",
+        **_STUDY, **_FOLDER, **_VERSIONS, **_INPUT, **_MESH, "about": "text: What is computed.",
         "slip_angle_rad*": "number: Slip angle.", "slip*": "number: Longitudinal slip.",
         "camber_rad*": "number: Camber.", "force_N*": "list: Force of the road, x, y, z.",
         "friction_power_W": "number: Friction power.", "mean_wear_mm_per_1000_km": "number: Mean wear of the rings.",

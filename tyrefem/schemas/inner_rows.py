@@ -60,14 +60,13 @@ _PLACE_OF_LAW = {
 #: Facts of a mesh.
 MESH: Keys = {
     "mesher*": "text: mapped, gmsh or a file.", "cell*": "text?: quad or tri.",
-    "element*": "text: P1 or P2.", "size_m*": "number: Size of the elements.", "size*": "number: The same, m.",
+    "element*": "text: P1 or P2.", "size_m*": "number?: Size of the elements; null: of a file.",
     "nodes*": "integer: Number.", "elements*": "integer: Number.",
     "half*": "truth: Half of a symmetric section?", "scaled_jacobian*": "number: Least quality.",
     "edge_ratio*": "number: Longest over shortest edge of an element, greatest.",
     "nodes_of_nine_node_elements*": "integer: Of the mechanical mesh.",
     "through*": "integer: Elements through a layer.", "section*": "text: half or full.",
-    "file*": "text?: Mesh file.", "names*": "table: Region or boundary -> its name in the file.",
-    "axes*": "text: Axes of the file.", "unit*": "text: Unit of the file.",
+    "file*": "text: Mesh file.",
 }  # fmt: skip
 #: Key of any command -> rows below it.
 COMMON: dict[str, dict[str, Keys]] = {
