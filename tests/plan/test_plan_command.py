@@ -76,7 +76,7 @@ def diagnosed(owner: Path) -> Path:
 def test_the_command_writes_its_files(owner: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "plan"
     assert main(["plan", str(owner), "--out", str(out), "--workers", "1"]) == 0
-    assert {path.name for path in out.iterdir()} == {*FILES, "summary.json"}
+    assert {path.name for path in out.iterdir()} == {*FILES, "study.toml", "summary.json"}
     words = capsys.readouterr().out
     assert words.startswith("Before any data: no effect, or one of 3 single effects")
     assert "Run 1: speed" in words
