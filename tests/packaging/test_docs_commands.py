@@ -45,6 +45,9 @@ MORE = {
 FIRST = {
     "tyrefem check studies/my-tyre": ["tyrefem new study my-tyre"],
     "tyrefem check plugins/arrhenius.py": ["tyrefem new tan-delta-law arrhenius"],
+    "tyrefem run results/soft/study.toml": [
+        shlex.join(["tyrefem", "modes", "nasa-22x5.5-8pr", *COARSE["nasa-22x5.5"], "--out", "results/soft"])
+    ],
     "tyrefem run studies/passenger-225-45r17": ["tyrefem new tyre 225/45R17 --from passenger-205-55r16"],
 }
 #: Command -> files of the repository that its page has, here by the names of the page.
