@@ -8,7 +8,9 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+import tomli_w
 
+import tyrefem as tf
 from tyrefem.cli import main
 from tyrefem.simulation.law_comparison import TOTAL, compared_laws
 
@@ -90,3 +92,15 @@ def test_a_section_without_arcs_is_compared_by_its_own_regions(refused: Callable
     """No arcs to compare, and the only law asked for is theirs."""
     error = refused("strain", "passenger-205-55r16", "--law", "arcs")
     assert "the strain law 'arcs' needs" in error
+
+
+def test_a_measured_table_of_the_study_is_never_replaced(here: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    """The command does not read the table, but the study needs it."""
+    table = here / "out" / "strain.csv"
+    table.parent.mkdir()
+    table.write_text("time [s],contained-air [degC]\n0,25\n", encoding="utf-8")
+    card = {**tf.study(STUDY).data, "measured": [{"table": "out/strain.csv"}]}
+    (here / "mine.toml").write_text(tomli_w.dumps(card), encoding="utf-8")
+    assert main(["strain", "mine.toml", "--out", "out", "--force", *BRIEF]) == 2
+    assert "strain.csv: is an input of this command" in capfd.readouterr().err
+    assert table.read_text(encoding="utf-8").startswith("time")

@@ -104,3 +104,17 @@ def test_layer_study_is_a_command(here: Path, capfd: pytest.CaptureFixture[str])
     assert main(["rig", "layers", "mine.toml", "--most", "1", "--out", "out", "--json"]) == 0
     assert [row["layers"] for row in json.loads(capfd.readouterr().out)["rows"]] == [1]
     assert Path("out/layers.png").is_file()
+
+
+@pytest.mark.parametrize(("command", "name"), [("identify", "residuals.csv"), ("layers", "layers.csv")])
+def test_a_table_in_the_folder_of_results_is_never_replaced(
+    here: Path, capfd: pytest.CaptureFixture[str], command: str, name: str
+) -> None:
+    table = here / "out" / name
+    table.parent.mkdir()
+    times = "".join(f"low,{t},22.0,22.0,22.0\n" for t in range(0, 320, 10))
+    table.write_text(f"run,time [s],outer [degC],inner [degC],interface [degC]\n{times}", encoding="utf-8")
+    before = table.read_bytes()
+    assert main(["rig", command, "mine.toml", f"out/{name}", "--out", "out", "--force"]) == 2
+    assert f"{name}: is an input of this command" in capfd.readouterr().err
+    assert table.read_bytes() == before

@@ -16,6 +16,7 @@ from tyrefem.inputs.study_contents import StudyContents
 from tyrefem.inputs.study_file import write_study
 from tyrefem.inputs.uncertain_numbers import uncertain_number
 from tyrefem.measured.cases import Case, read_cases
+from tyrefem.output import note_input
 
 if TYPE_CHECKING:
     from tyrefem.geometry.meshing import TyreMesh
@@ -65,6 +66,9 @@ class StudyData(StudyContents):
         expect_kind("study", data, path)
         loaded = cls(stem, all_changed(data, first), path, folder)
         loaded = loaded if case is None else loaded.case(case).replace(changes)
+        # Inputs of every command with this study, also of those that do not read them.
+        for entry in loaded.measured:
+            note_input(entry.table)
         if not loaded.is_campaign:  # the cases of a campaign are checked each
             loaded.check_uncertainty()
         return loaded
