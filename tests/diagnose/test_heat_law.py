@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,9 +12,10 @@ from numpy.typing import NDArray
 from tyrefem.diagnose.heat.courses import CourseGrid
 from tyrefem.diagnose.heat.evidence import ProjectedData
 from tyrefem.diagnose.law.evidence import LawData, fitted_law, law_data, plain_switch
-from tyrefem.diagnose.law.heat_law import PlaceLaw, place_law
+from tyrefem.diagnose.law.heat_law import Exponent, PlaceLaw, place_law
 from tyrefem.diagnose.law.scatter import SeriesScatter
-from tyrefem.diagnose.law.terms import DriveVariables, drive_variables, fine_times, law_terms, structures
+from tyrefem.diagnose.law.terms import WARM, DriveVariables, drive_variables, fine_times, law_terms, structures
+from tyrefem.diagnose.words.law import law_formula
 
 Array = NDArray[np.float64]
 #: Run -> speed m/s, load N, pressure Pa.
@@ -259,3 +261,16 @@ def test_a_term_that_only_shared_errors_ask_for_is_no_part_of_the_law() -> None:
             false_terms[scattered] += len(set(shown.fit.terms) - {"speed"}) + (shown.fit.switch.kind != "no switch")
     assert false_terms[False] >= 6
     assert false_terms[True] <= 2
+
+
+def test_the_formula_is_rounded_to_the_digits_of_its_deviations() -> None:
+    shown = law(lambda v: 4.0 * (v.speed / 11.0) ** 1.5 * (v.load / 14e3) ** -0.8)
+    fit = replace(shown.fit, terms=("speed", "load", WARM))
+    exponents = (
+        Exponent("speed", 1.5234, 0.0312, 1.0, True, 11.0),
+        Exponent("load", -0.8123, 0.4, 1.0, True, 14e3),
+        Exponent(WARM, -0.015, 0.0004, 1.0, True, 25.0),
+    )
+    assert law_formula(replace(shown, fit=fit, exponents=exponents)) == (
+        "grows as speed^1.523 ± 0.031 × load^(-0.8 ± 0.4) × exp(-1.50 ± 0.04 %/K × temperature)"
+    )

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from tyrefem.diagnose.data.residuals import Residuals
+from tyrefem.diagnose.numbers import with_sd
 from tyrefem.diagnose.unknowns.unknown import Unknown, with_values
 from tyrefem.errors import InputError
 from tyrefem.inputs.changes import all_changed, by_places, scaled, value_at
@@ -164,7 +165,8 @@ def _provenance(study: StudyData, change: Change, key: str) -> dict[str, Any]:
     if not table.startswith("materials."):
         return {}
     before = value_at(study.data, f"{table}.source", study.folder)
-    factor = f"factor {change.unknown.value(change.x):.3f} ± {change.sd:.2g} by {change.source}"
+    value = change.unknown.value(change.x)
+    factor = f"factor {with_sd(value, value * change.sd)} by {change.source}"
     return {f"{table}.source": f"{factor}; before: {before}", f"{table}.relative_sd": float(f"{change.sd:.2g}")}
 
 

@@ -62,12 +62,33 @@ def amount(value: float, sd: float, unit: str) -> str:
     ('+4.4 ± 0.9 K', '+0.21 ± 0.13 mm', '-0.05 ± 0.10')
     """
     factor, shown = READ.get(unit, (1.0, unit.replace("**2", "²").replace("**3", "³")))
-    value, sd = value * factor, sd * factor
+    return f"{with_sd(value * factor, sd * factor, sign='+')} {shown}".rstrip()
+
+
+def with_sd(value: float, sd: float, *, sign: str = "-") -> str:
+    """A value and its standard deviation, rounded to the digits of the deviation; ``sign="+"``: always with a sign.
+
+    >>> with_sd(1.9234, 0.0412), with_sd(-0.31, 0.2), with_sd(1234.0, 87.0), with_sd(1.5, 0.2, sign="+")
+    ('1.92 ± 0.04', '-0.31 ± 0.20', '1230 ± 90', '+1.50 ± 0.20')
+    """
     decimals = _decimals(sd if sd > 0 and math.isfinite(sd) else abs(value) / 100)
     scale = 10.0 ** min(decimals, 0)
-    first, second = (round(number * scale) / scale for number in (value, sd)) if decimals < 0 else (value, sd)
+    first, second = (
+        (round(number * scale) / scale if math.isfinite(number) else number for number in (value, sd))
+        if decimals < 0
+        else (value, sd)
+    )
     places = max(decimals, 0)
-    return f"{first:+z.{places}f} ± {second:.{places}f} {shown}".rstrip()
+    return f"{first:{sign}z.{places}f} ± {second:.{places}f}"
+
+
+def time_with_sd(time: float, sd: float) -> str:
+    """A time with its standard deviation, at least 1 s.
+
+    >>> time_with_sd(611.7, 0.2), time_with_sd(611.7, 24.0), time_with_sd(611.7, 58.0)
+    ('611.7 ± 1.0 s', '612 ± 24 s', '610 ± 60 s')
+    """
+    return f"{with_sd(time, max(sd, 1.0))} s"
 
 
 def extent(low: float, high: float, unit: str) -> str:

@@ -242,20 +242,14 @@ def _correction(d: DiagnosisData, change: Change) -> dict[str, str]:
     unknown = change.unknown
     if unknown.effect is None:
         new = value_at(d.study.data, unknown.key, d.study.folder)
-        relative = unknown.value(change.x) - 1
-        of_share = {
-            "change": f"{100 * relative:+z.1f} ± {100 * change.sd:.1f} %",
-            "prior": f"± {number(100 * unknown.sd, 2)} %",
-        }
-        of_temperature = {
-            "change": correction_amount(unknown, change.x, change.sd),
-            "prior": f"± {number(unknown.kelvins * unknown.sd, 2)} K",
-        }
+        kelvins = unknown.kelvins
+        prior = f"{number(kelvins * unknown.sd, 2)} K" if kelvins else f"{number(100 * unknown.sd, 2)} %"
         return {
             "what": base_name(unknown),
             "original": str(value_at(d.original.data, unknown.key, d.original.folder)),
             "amended": str(new),
-            **(of_temperature if unknown.kelvins else of_share),
+            "change": correction_amount(unknown, change.x, change.sd),
+            "prior": f"± {prior}",
         }
     if unknown.effect == "film-scale":
         film = dict(unknown.choice)["film"].replace("_", " ")
@@ -264,7 +258,7 @@ def _correction(d: DiagnosisData, change: Change) -> dict[str, str]:
             "what": f"film coefficient, {film}",
             "original": "from its law",
             "amended": f"times {math.exp(change.x):.3g}",
-            "change": f"{100 * (math.exp(change.x) - 1):+z.1f} ± {100 * change.sd:.1f} %",
+            "change": correction_amount(unknown, change.x, change.sd),
             "prior": f"± {number(100 * unknown.sd, 2)} %",
         }
     return {

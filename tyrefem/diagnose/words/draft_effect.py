@@ -23,6 +23,7 @@ from tyrefem.diagnose.law.terms import (
     SPEED,
     WARM,
 )
+from tyrefem.diagnose.numbers import time_with_sd, with_sd
 from tyrefem.diagnose.unknowns.heat_patches import ALL_LAYERS, SURFACES, place_of
 from tyrefem.diagnose.unknowns.unknown import Unknown
 from tyrefem.diagnose.words.law import law_formula, law_place_words
@@ -102,12 +103,12 @@ def draft_source(d: DiagnosisData, name: str) -> str:
     fitted = [Path(entry.table).name for entry in d.original.measured if not entry.hold_out]
     tables = ", ".join(dict.fromkeys(fitted)) or ", ".join(heat.basis.grid.names)
     today = datetime.datetime.now(tz=datetime.UTC).date().isoformat()
-    shown = f"{law.amplitude:.3g} +- {law.sd:.2g} {'' if unit == '1' else unit}".rstrip()
-    intervals = "; ".join(f"{PARAMETERS[e.name][1]} {e.mean:.3g} +- {e.sd:.2g}" for e in exponents)
+    numbers = [f"{with_sd(law.amplitude, law.sd)} {'' if unit == '1' else unit}".rstrip()]
+    numbers += [f"{PARAMETERS[e.name][1]} {with_sd(e.mean, e.sd)}" for e in exponents]
     if math.isfinite(law.time):
-        intervals += f"{'; ' if intervals else ''}switch at {law.time:.0f} +- {max(law.time_sd, 1.0):.0f} s"
-    numbers = [shown, *([intervals] if intervals else [])]
-    source = f"inferred from {d.original.name}, tables {tables}, {today}: {'; '.join(numbers)}"
+        numbers.append(f"switch at {time_with_sd(law.time, law.time_sd)}")
+    listed = "; ".join(numbers).replace("±", "+-")
+    source = f"inferred from {d.original.name}, tables {tables}, {today}: {listed}"
     formula = law_formula(law).replace("×", "x").replace("±", "+-").replace("°", "deg").replace("·", " ")
     sign = "Heat is missing" if law.amplitude > 0 else "Cooling is missing"
     words = f"{sign} {where}, by an unknown cause.".replace("Cooling is missing a share", "Too large is a share")

@@ -89,9 +89,10 @@ def _sign(value: float) -> str:
 def _course(source: UnknownSource, kind: str, *, timed: bool = True) -> str:
     size = 10.0 ** math.floor(math.log10(source.time_sd)) if timed and source.time_sd > 0 else 1.0
     size = min(size, 10.0)
-    switch = f" at {round(source.time / size) * size:.0f} ± {math.ceil(source.time_sd / size) * size:.0f} s" if (
+    time = f"{round(source.time / size) * size:.0f} ± {math.ceil(source.time_sd / size) * size:.0f} s" if (
         timed and math.isfinite(source.time)
     ) else ""  # fmt: skip
+    switch = f" at {time}" if time else ""
     if kind.startswith(PHASE):
         return f"acts in the phase {kind.removeprefix(PHASE)} only"
     if kind.startswith(RUN):
@@ -102,7 +103,7 @@ def _course(source: UnknownSource, kind: str, *, timed: bool = True) -> str:
         SPEED: "is in proportion to the speed",
         BEGINS: f"begins{switch}",
         ENDS: f"ends{switch}",
-        GROWS: "grows evenly" + (f" from {source.time:.0f} ± {source.time_sd:.0f} s on" if switch else ""),
+        GROWS: "grows evenly" + (f" from {time} on" if time else ""),
         FREE: "changes over time (picture missing-heat-course.png)",
     }[kind]
 

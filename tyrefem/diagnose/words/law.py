@@ -9,7 +9,7 @@ from tyrefem.diagnose.heat.courses import BEGINS, ENDS, PHASE, RUN
 from tyrefem.diagnose.heat.sources import CLEAR, STATED
 from tyrefem.diagnose.law.places import FILM, FLUX, LOSS, UNITS, WHOLE_SURFACES, LawPlace
 from tyrefem.diagnose.law.terms import ABOVE, DEFLECTION, LOAD, NO_SWITCH, PRESSURE, REST, ROLLING, SPEED, WARM
-from tyrefem.diagnose.numbers import amount, chance, percent
+from tyrefem.diagnose.numbers import amount, chance, percent, time_with_sd, with_sd
 from tyrefem.diagnose.unknowns.heat_patches import SURFACES, place_of
 from tyrefem.diagnose.verdicts.verdict import PARTLY
 from tyrefem.diagnose.words.heat import is_told, source_place, station_words
@@ -46,9 +46,8 @@ def law_words(d: DiagnosisData) -> tuple[str, ...]:
     heads = {PARTLY: "The heat that is missing beside it has a law over these runs"}
     head = heads.get(d.verdict, "Its law over these runs")
     first = f"{head}: {sign}{law_place_words(d, heat.place)}, {law_formula(law)}{_when(heat)}"
-    size = amount(law.amplitude, law.sd, UNITS[heat.place.kind]) if UNITS[heat.place.kind] != "1" else (
-        f"{100 * law.amplitude:+.0f} ± {100 * law.sd:.0f} %"
-    )  # fmt: skip
+    unit = UNITS[heat.place.kind]
+    size = amount(100 * law.amplitude, 100 * law.sd, "%") if unit == "1" else amount(law.amplitude, law.sd, unit)
     at = [reference_words(law, name) for name in law.fit.terms]
     part = f"It describes {percent(heat.share)} of what heat with a free course in every run describes"
     rest = [part] if heat.share < PART else []
@@ -133,11 +132,10 @@ def law_place_words(d: DiagnosisData, place: LawPlace) -> str:
 
 def _term(entry: Exponent) -> str:
     if entry.name == WARM:
-        return f"exp({100 * entry.mean:+.1f} ± {100 * entry.sd:.1f} %/K × temperature)"
+        return f"exp({amount(entry.mean, entry.sd, '1/delta_degC')} × temperature)"
     name = "(temperature above ambient)" if entry.name == ABOVE else entry.name
-    return f"{name}^({entry.mean:.2f} ± {entry.sd:.2f})" if entry.mean < 0 else (
-        f"{name}^{entry.mean:.2f} ± {entry.sd:.2f}"
-    )  # fmt: skip
+    exponent = with_sd(entry.mean, entry.sd)
+    return f"{name}^({exponent})" if entry.mean < 0 else f"{name}^{exponent}"
 
 
 def _short(fit: LawFit) -> str:
@@ -167,7 +165,7 @@ def _when(heat: HeatLaw) -> str:
     chance = law.switch_probabilities[kind]
     doubt = "" if chance >= 0.9 else f" ({percent(chance)})"
     rolling = ", only while rolling" if inside and not kind.startswith((PHASE, RUN)) else ""
-    time = f" at {law.time:.0f} ± {max(law.time_sd, 1.0):.0f} s" if math.isfinite(law.time) else ""
+    time = f" at {time_with_sd(law.time, law.time_sd)}" if math.isfinite(law.time) else ""
     return f"{rolling}, {_kind(kind)}{time}{doubt}"
 
 
