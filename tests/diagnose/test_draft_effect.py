@@ -90,8 +90,8 @@ class TyreStub:
 def test_heat_at_a_station(tmp_path: Path) -> None:
     place = LawPlace(HEAT, 0.06, "all layers", HEATED, 1.0)
     effect = loaded(tmp_path, place, law({"speed": 1.5, "load": 0.5, "temperature": -0.02}, "begins", 300.0))
-    assert "2e+04 +- 2e+03 W/m**3" in effect.source
-    assert "speed 1.5 +- 0.1" in effect.source
+    assert "20000 +- 2000 W/m**3" in effect.source
+    assert "speed 1.50 +- 0.10" in effect.source
     assert effect.jumps == (300.0,)
     assert [parameter.name for parameter in effect.parameters()] == [
         "heat", "speed_exponent", "load_exponent", "temperature_rate",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 from dataclasses import replace
 from pathlib import Path
@@ -19,7 +20,8 @@ from tyrefem.diagnose.data.sensitivities import Sensitivities
 from tyrefem.diagnose.forward.evaluations import Evaluations
 from tyrefem.diagnose.forward.forward_model import ForwardModel
 from tyrefem.diagnose.forward.sampling import DriveSampling, SensorSampling
-from tyrefem.diagnose.inference.linear_model import LinearModel
+from tyrefem.diagnose.inference.linear_model import DesignMatrix, LinearModel
+from tyrefem.diagnose.inference.set_evidences import SetEvidences
 from tyrefem.diagnose.layout.isolability import (
     MARGIN,
     Isolability,
@@ -32,7 +34,7 @@ from tyrefem.diagnose.layout.isolability import (
 )
 from tyrefem.diagnose.unknowns.candidates import Candidate, SetPrior
 from tyrefem.diagnose.unknowns.energy_shapes import SHAPE
-from tyrefem.diagnose.unknowns.unknown import of_effect
+from tyrefem.diagnose.unknowns.unknown import Unknown, of_effect
 from tyrefem.effects import catalogue
 from tyrefem.inputs.name_patterns import SCALES
 from tyrefem.schemas.answer_schema import answer_schema
@@ -146,3 +148,28 @@ def test_the_command_calibrates_a_layout(
     assert (out / "calibration.png").read_bytes()[:4] == b"\x89PNG"
     refused = CliRunner().invoke(app, [*arguments[:3], "10"])
     assert refused.exit_code == 2
+
+
+def test_evidences_of_many_sets_at_once_are_those_of_each_alone() -> None:
+    """No effect, single effects and pairs: with and without bounds, of two amplitudes, and of a fixed signal."""
+    free, bounded, other = effect("free"), effect("bounded", low=0.0), effect("other", sd=0.5, low=-0.1)
+    double = Candidate("double", (), (*effect("first", low=0.0).unknowns, *effect("second").unknowns))
+    swapped = Candidate("swapped", (), (Unknown("swapped", 1.0, effect="swapped"),))
+    candidates = (free, bounded, other, double, swapped)
+    nuisance = (STATED, Unknown("drive.load", 0.1, low=-0.05), Unknown("drive.pressure", 0.2))
+    rng = np.random.default_rng(5)
+    unknowns = (*nuisance, *(unknown for candidate in candidates for unknown in candidate.unknowns))
+    design = DesignMatrix(unknowns, len(nuisance), rng.normal(size=(40, len(unknowns))))
+    sets = [members for size in range(3) for members in itertools.combinations(candidates, size)]
+    many = SetEvidences(design, sets)
+    for size in (0.0, 1.0, 5.0):
+        linear = LinearModel(design, size * rng.normal(size=40))
+        expected = [linear.log_evidence(members) for members in sets]
+        assert many.log_evidence(linear.overlap) == pytest.approx(expected, rel=1e-9, abs=1e-9)
+
+
+def test_every_effect_compared_is_reported_as_progress(case: Case, known: Sensitivities) -> None:
+    done: list[tuple[str, int, int]] = []
+    result = isolability(case.study, known=known, progress=lambda *each: done.append(each))
+    n = len(result.candidates)
+    assert done == [("effects", number, n) for number in range(1, n + 1)]

@@ -76,7 +76,8 @@ def isolability(
                 known = planned_sensitivities(
                     loaded, workers=count, progress=lambda _what, done, total: step(done / max(total, 1)), store=store
                 )
-            result = found_by(loaded, known=known)
+            with progress(f"{loaded.name}: effects against each other", 1.0) as step:
+                result = found_by(loaded, known=known, progress=lambda _what, done, total: step(done / max(total, 1)))
             calibration = None
             if cases is not None:
                 with progress(f"{loaded.name}: {cases} {'fitted' if fitted else 'quick'} cases", 1.0) as step:

@@ -19,7 +19,8 @@ from tyrefem.diagnose.forward.effort import SENSITIVITIES, check_effort
 from tyrefem.diagnose.forward.evaluations import Evaluations, ProgressStore, evaluating
 from tyrefem.diagnose.forward.forward_model import DriveResponse, ForwardModel
 from tyrefem.diagnose.forward.sampling import DriveSampling, SensorSampling
-from tyrefem.diagnose.inference.linear_model import LinearModel
+from tyrefem.diagnose.inference.linear_model import DesignMatrix, LinearModel
+from tyrefem.diagnose.inference.set_evidences import SetEvidences
 from tyrefem.diagnose.unknowns.candidates import Candidate, Members, SetPrior, catalogue_candidates
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
@@ -247,16 +248,17 @@ def isolability(
     if known is None:
         known = planned_sensitivities(study, workers=workers, progress=progress, store=store)
     prior = SetPrior(candidates, study.card.diagnosis.effects_expected)
-    linear = _noiseless(known, known.fitted)
+    design = known.design(known.fitted)
+    singles = _SingleEffects(design, candidates, prior)
     n = len(candidates)
     smallest, seen, last = np.full(n, np.inf), np.full(n, np.inf), [""] * n
     separation = np.zeros((n, n))
     for i, candidate in enumerate(candidates):
-        response = _response(linear, candidate)
-        at_scale = margins(linear, response, (candidate,), [(other,) for other in candidates], prior)
-        separation[i] = at_scale
-        smallest[i], last[i] = _threshold(linear, response, candidate, candidates, prior)
-        seen[i], _ = _threshold(linear, response, candidate, (), prior)
+        separation[i] = singles.leads(i, 1.0)[1:]
+        smallest[i], last[i] = singles.threshold(i)
+        seen[i], _ = _SingleEffects(design, (candidate,), prior).threshold(0)
+        if progress is not None:
+            progress("effects", i + 1, n)
     runs, untried = fewest_runs(known, candidates, prior, smallest)
     scale = np.array([candidate.amplitudes[0].sd if candidate.amplitudes else 1.0 for candidate in candidates])
     shares = np.array([1 / sum(other.name == candidate.name for other in candidates) for candidate in candidates])
@@ -306,52 +308,66 @@ def layout_sensitivities(
     return sensitivities(model.drives, unknowns, nuisance, known)
 
 
-def _noiseless(known: Sensitivities, numbers: Sequence[int]) -> LinearModel:
-    """The linear model of some runs with zero data."""
-    design = known.design(numbers)
-    return LinearModel(design, np.zeros(len(design.jacobian)))
+class _SingleEffects:
+    """Every single effect at some amplitude, and its lead over no effect and every other single effect."""
 
+    def __init__(self, design: DesignMatrix, candidates: Sequence[Candidate], prior: SetPrior) -> None:
+        self._design, self._candidates = design, candidates
+        sets: list[Members] = [(), *((candidate,) for candidate in candidates)]
+        self._evidences = SetEvidences(design, sets)
+        self._log_prior = np.array([prior(members) for members in sets])
+        self._overlaps = np.array([design.gram @ self._usual(candidate) for candidate in candidates])
 
-def _response(linear: LinearModel, candidate: Candidate) -> Array:
-    """Signal of an effect at its usual amplitude: all its amplitudes at one prior sd, on the allowed side."""
-    signal = np.zeros(len(linear.data))
-    for unknown in candidate.presence:
-        signal = signal + linear.jacobian[:, linear.design.place[unknown]]
-    for unknown in candidate.amplitudes:
-        side = 1.0 if unknown.high > 0 else -1.0
-        signal = signal + linear.jacobian[:, linear.design.place[unknown]] * side * min(
-            unknown.sd, abs(side * unknown.high)
-        )
-    return signal
+    def _usual(self, candidate: Candidate) -> Array:
+        """(k,) unknowns of an effect at its usual amplitude: all amplitudes at one prior sd, on the allowed side."""
+        values = np.zeros(len(self._design.unknowns))
+        values[self._design.columns(candidate.presence)] = 1.0
+        for unknown in candidate.amplitudes:
+            side = 1.0 if unknown.high > 0 else -1.0
+            values[self._design.place[unknown]] = side * min(unknown.sd, abs(side * unknown.high))
+        return values
 
+    def leads(self, number: int, amplitude: float) -> Array:
+        """(1 + n,) lead (nats) over no effect and over every single effect, for readings without noise.
 
-def _threshold(
-    linear: LinearModel, response: Array, candidate: Candidate, candidates: Sequence[Candidate], prior: SetPrior
-) -> tuple[float, str]:
-    """Amplitude (prior sd) from which the effect is ahead of all competitors, and the last competitor ruled out."""
-    sets = competitors_of((candidate,), candidates)
-    if not candidate.amplitudes:
-        ahead = margins(linear, response, (candidate,), sets, prior)
-        worst = int(np.argmin(ahead))
-        return 1.0 if ahead[worst] >= MARGIN else math.inf, " + ".join(each.key for each in sets[worst]) or "no effect"
-    unknown = candidate.amplitudes[0]
-    largest = max(abs(unknown.low), abs(unknown.high)) / unknown.sd
-    largest = min(largest, 20.0)
-    values = np.geomspace(0.02, largest, 40) if largest > 0.02 else np.array([largest])
+        ``amplitude``: in usual amplitudes.
+        """
+        scores = self._log_prior + self._evidences.log_evidence(amplitude * self._overlaps[number])
+        return np.asarray(scores[1 + number] - scores)
 
-    def last(value: float) -> str | None:
-        """The competitor that is not ruled out, or the closest of them; None if all are."""
-        ahead = margins(linear, value * response, (candidate,), sets, prior)
-        worst = int(np.argmin(ahead))
-        return None if ahead[worst] >= MARGIN else " + ".join(member.key for member in sets[worst]) or "no effect"
+    def _closest(self, number: int, amplitude: float) -> tuple[int, float]:
+        """The competitor with the smallest lead (0: no effect), and the lead."""
+        ahead = self.leads(number, amplitude)
+        ahead[1 + number] = np.inf
+        closest = int(np.argmin(ahead))
+        return closest, float(ahead[closest])
 
-    # A lead grows with the square of the amplitude, so bisection finds where it reaches the margin.
-    first, competitor = bisect_left(values, True, key=lambda value: last(value) is None), ""
-    if first > 0:
-        competitor = last(values[first - 1]) or ""
-    if first < len(values):
-        return float(values[first]), competitor
-    return math.inf, competitor
+    def is_ahead(self, number: int, amplitude: float) -> bool:
+        """Whether the effect leads over all competitors by the margin."""
+        return self._closest(number, amplitude)[1] >= MARGIN
+
+    def threshold(self, number: int) -> tuple[float, str]:
+        """Amplitude (prior sd) from which the effect is ahead of all competitors, and the last competitor ruled out."""
+        candidate = self._candidates[number]
+        names = ["no effect", *(each.key for each in self._candidates)]
+        if not candidate.amplitudes:
+            closest, lead = self._closest(number, 1.0)
+            return 1.0 if lead >= MARGIN else math.inf, names[closest]
+        unknown = candidate.amplitudes[0]
+        largest = max(abs(unknown.low), abs(unknown.high)) / unknown.sd
+        largest = min(largest, 20.0)
+        values = np.geomspace(0.02, largest, 40) if largest > 0.02 else np.array([largest])
+
+        def remaining(value: float) -> str | None:
+            """The competitor that is not ruled out, or the closest of them; None if all are."""
+            closest, lead = self._closest(number, value)
+            return None if lead >= MARGIN else names[closest]
+
+        # A lead grows with the square of the amplitude, so bisection finds where it reaches the margin.
+        first, competitor = bisect_left(values, True, key=lambda value: remaining(value) is None), ""
+        if first > 0:
+            competitor = remaining(values[first - 1]) or ""
+        return (float(values[first]) if first < len(values) else math.inf), competitor
 
 
 def fewest_runs(
@@ -374,20 +390,8 @@ def fewest_runs(
             runs = f"{size} and more of the {len(known.fitted)} fitted runs"
             return (), (f"The fewest runs are not known: there are too many sets of {runs}.",)
         for chosen in itertools.combinations(known.fitted, size):
-            linear = _noiseless(known, chosen)
-            ok = all(
-                min(
-                    margins(
-                        linear,
-                        2 * _response(linear, candidates[i]),
-                        (candidates[i],),
-                        competitors_of((candidates[i],), candidates),
-                        prior,
-                    )
-                )
-                >= MARGIN
-                for i in wanted
-            )
+            singles = _SingleEffects(known.design(chosen), candidates, prior)
+            ok = all(singles.is_ahead(i, 2.0) for i in wanted)
             if ok:
                 enough.append(tuple(names[i] for i in chosen))
         if enough:
