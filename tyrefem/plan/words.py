@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from tyrefem.diagnose.numbers import percent, with_sd
+from tyrefem.diagnose.numbers import percent
 from tyrefem.plan.drives import CandidateDrive, quantity_name
 from tyrefem.plan.information import NAMED
 
@@ -44,7 +44,7 @@ def step_words(step: PlanStep, *, pair: bool = True) -> str:
         else ""
     )
     tells += f"the true set {'then has' if pair else 'is expected to have'} {percent(step.right)} on average"
-    together = with_sd(step.total_gain, max(step.sd, 0.005))
+    together = f"{step.total_gain:.2f} ± {max(step.sd, 0.01):.2f}"
     return (
         f"{step_name(step)}: {tells} (gain {step.gain:.2f} nats, together {together}; "
         f"cost {step.cost:.3g}, together {step.total_cost:.3g})."
