@@ -71,7 +71,7 @@ class SetEvidences(Brief):
         sd = design.sd[n:][at]
         limits = np.array([(unknown.low, unknown.high) for unknown in design.unknowns[n:]]).reshape(-1, 2)
         matrix = np.eye(k) + gram[at[:, :, None], at[:, None, :]] * sd[:, :, None] * sd[:, None, :]
-        covariance = np.linalg.inv(matrix)
+        covariance: Array = np.asarray(np.linalg.inv(matrix), dtype=float)
         nuisance = projection[:, design.bounded][at]
         wide = covariance * sd[:, :, None] * sd[:, None, :]
         return _SameSize(
