@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -20,6 +22,7 @@ from tyrefem.diagnose.forward.sampling import DriveSampling
 from tyrefem.diagnose.unknowns.candidates import catalogue_candidates
 from tyrefem.effects import catalogue
 from tyrefem.plan.drives import candidate_drives
+from tyrefem.plan.words import last_words
 from tyrefem.plan.workflow import rival_of
 from tyrefem.reports.plan import FILES, page
 
@@ -207,3 +210,13 @@ def test_options_of_tables_need_a_table(owner: Path, diagnosed: Path, capsys: py
     for arguments in ([], [str(diagnosed)]):
         assert main(["plan", str(owner), *arguments, "--ignore", "speed"]) == 2
         assert "--ignore: is for a table of readings" in capsys.readouterr().err
+
+
+def test_a_plan_that_ends_before_its_last_run_asks_for_wider_limits() -> None:
+    """More runs are no advice where the plan did not use those that it may have."""
+    step: Any = SimpleNamespace(total_gain=0.4, right=0.45)
+    plan: Any = SimpleNamespace(beliefs=SimpleNamespace(sets=(1, 2)), steps=(step,), doubt=2.0, runs_left=0)
+    assert "Allow more runs or sensors" in last_words(plan)[-1]
+    plan.runs_left = 18
+    assert "No further run within the limits is expected to tell more" in last_words(plan)[-1]
+    assert "runs_most" not in last_words(plan)[-1]

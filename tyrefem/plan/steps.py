@@ -84,6 +84,7 @@ class PlanData(Brief):
     ----------
     study : name of the study. beliefs : the sets before the plan. steps : of the plan, the best first.
     drives, places : all that were compared. compared : experiments compared for the first step. notes : sentences.
+    runs_left : further runs that the plan may have, but that are not expected to tell more.
     """
 
     study: str
@@ -94,6 +95,7 @@ class PlanData(Brief):
     compared: tuple[ExperimentChoice, ...] = ()
     notes: tuple[str, ...] = ()
     seconds: float = 0.0
+    runs_left: int = 0
 
     def _title(self) -> str:
         return f"of {self.study}: {len(self.steps)} steps"

@@ -83,5 +83,8 @@ def last_words(plan: PlanData) -> list[str]:
     ]
     if plan.steps[-1].right < NAMED:
         least = f"A name needs {percent(NAMED)}; the true set is expected to have {percent(plan.steps[-1].right)}."
-        words.append(f"{least} Allow more runs or sensors (runs_most, sensors_most), or wider limits.")
+        more = "Allow more runs or sensors (runs_most, sensors_most), or wider limits."
+        # More runs are allowed already; none of them is worth it.
+        ended = "No further run within the limits is expected to tell more: allow wider limits or further sensors."
+        words.append(f"{least} {ended if plan.runs_left else more}")
     return words

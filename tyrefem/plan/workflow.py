@@ -78,7 +78,8 @@ def plan(
     notes = layout_notes(study)[:1] if not beliefs.verdict else ()
     steps = _steps(readings, search, drives, places)
     seconds = time.perf_counter() - began
-    return PlanData(study.name, readings.beliefs, steps, drives, places, search.compared, notes, seconds)
+    left = study.card.plan.runs_most - sum(step.drive is not None for step in steps)
+    return PlanData(study.name, readings.beliefs, steps, drives, places, search.compared, notes, seconds, left)
 
 
 def _beliefs(
