@@ -216,7 +216,8 @@ def test_a_standard_deviation_may_be_a_quantity(ambient: str) -> None:
     fitted = with_values(study, {unknown: math.log1p(unknown.sd)})
     assert fitted.card.drive.phases[0].ambient.start == pytest.approx(27.0)
     (varied,) = [number for number in uncertain(study, 1.0) if number.key == "drive.ambient"]
-    assert varied.of(varied.at(1.0)) == pytest.approx(300.15 / 298.15)
+    assert varied.of(varied.at(1.0)) == pytest.approx(27.0 if varied.unit == "degC" else 300.15)
+    assert varied.unit == ("K" if ambient.endswith("K") else "degC")
 
 
 @pytest.mark.parametrize(
