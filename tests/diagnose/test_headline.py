@@ -201,12 +201,12 @@ def test_a_set_is_stated_at_the_confidence_of_its_weakest_member(case: Case) -> 
     # Without a difference in words, one number.
     sure = supported(d, LeftOut("run", "slow", d.judgement.probability))
     assert headline(sure)[1].startswith(
-        f"It is {chance} probable, also without any one sensor or run (least without run slow), among"
+        f"It is {chance} probable, also without any one run (least without run slow), among"
     )
     assert headline(replace(d, supports={}))[1].startswith(f"It is {chance} probable, among all that was tried")
     beside = supported(partly(d), LeftOut("sensor", "crown-outer", 0.93))
     assert headline(beside)[1].startswith(
-        "It is at least 93 % probable without any one sensor or run (least without crown-outer); with all readings at "
+        "It is at least 93 % probable without any one sensor (least without crown-outer); with all readings at "
         "least 97 %, whatever else is wrong; "
     )
 
@@ -217,7 +217,7 @@ def test_the_certain_member_of_a_confounded_set_is_stated_at_its_confidence(case
     assert certain_members(d.judgement, d.gap.settings) == (hot,)
     weak = replace(d, supports={hot: Support((LeftOut("run", "slow", 0.71),))})
     assert headline(weak)[1].startswith(
-        "It is at least 71 % probable without any one sensor or run (least without run slow); with all readings 99.0 %;"
+        "It is at least 71 % probable without any one run (least without run slow); with all readings 99.0 %;"
     )
     assert "It stays at least 71 % probable" in " ".join(verdict_words(weak))
     assert headline(replace(d, supports={}))[1].startswith("It is 99.0 % probable; ")

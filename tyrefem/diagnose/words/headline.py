@@ -231,7 +231,7 @@ def _no_gap(d: DiagnosisData) -> tuple[str, str, str]:
         return wrong, f"{sure}.", step
     sure = f"{sure}; {_closed(d)}."
     shown = corrections(d)
-    wrong = f"The study deviates ({_gap(d)}), but no effect is missing: corrections of stated numbers explain it"
+    wrong = f"The study deviates ({_gap(d)}), but no effect is needed: corrections of stated numbers explain it"
     if not shown:
         return f"{wrong}.", sure, "Measure the uncertain numbers of the study more exactly, then diagnose again."
     items = "; ".join(each.words for each in shown[:CORRECTIONS])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from tyrefem.diagnose.fitting.support import ALONE, RUN, LeftOut
+from tyrefem.diagnose.fitting.support import ALONE, RUN, SENSOR, LeftOut
 from tyrefem.diagnose.numbers import at_least, percent, run_words
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ def stated_words(d: DiagnosisData, members: Members, chance: float, text: str) -
     if least < ALONE:
         alone = f"without {_named(left)}, which alone {_tells(member, left)}"
         return f"{subject} only {percent(least)} probable {alone}; with all readings {text}"
-    where = f"without any one sensor or run (least without {_named(left)})"
+    where = f"without {_any_one(d)} (least without {_named(left)})"
     lower = at_least(least)
     if least >= chance or lower.removeprefix("at least ") == text.removeprefix("at least "):
         return f"{subject} {text} probable, also {where}"
@@ -65,7 +65,7 @@ def support_words(d: DiagnosisData) -> tuple[str, ...]:
     least, weakest = min(shared, key=lambda pair: pair[0])
     others = "The other effects stay" if alone and len(d.supports) > len(shared) else "They stay"
     subject = "It stays" if len(d.supports) == 1 else others
-    without = f"without any one sensor or run (least without {_named(weakest)})"
+    without = f"without {_any_one(d)} (least without {_named(weakest)})"
     first = f"{subject} {at_least(least)} probable {without}."
     return (first, *alone)
 
@@ -74,6 +74,12 @@ def _weakest(d: DiagnosisData) -> tuple[Candidate, LeftOut] | None:
     """The named effect with the smallest probability without one sensor or run, and this one."""
     known = [(member, left) for member, each in d.supports.items() if (left := each.weakest) is not None]
     return min(known, key=lambda pair: pair[1].probability, default=None)
+
+
+def _any_one(d: DiagnosisData) -> str:
+    """What was left out in turn: with a single fitted run its sensors, with a single sensor the runs."""
+    kinds = {left.kind for support in d.supports.values() for left in support.left_out}
+    return f"any one {' or '.join(kind for kind in (SENSOR, RUN) if kind in kinds)}"
 
 
 def _tells(member: Candidate, left: LeftOut) -> str:
