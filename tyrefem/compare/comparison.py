@@ -37,9 +37,8 @@ class ComparisonData(Brief):
     residuals : one row per reading: ``run, time_s, sensor, phase, measured_degC, computed_degC, error_K`` and
         ``u_val_K``, the standard validation uncertainty of that reading.
     inputs : one row per run, sensor, phase and uncertain input ``key``: ``relative_sd``, ``sd`` as text, the
-        ``regions`` in which the
-        input changes (a number of a card changes in all regions with this card) and ``change_K``, the change of the
-        mean when the input is one standard deviation higher.
+        ``regions`` in which the input changes (a number of a card changes in all regions with this card) and
+        ``change_K``, the change of the mean when the input is one standard deviation higher.
     curves : run -> computed readings at the saved times (``time_s``, degC).
     notes : sentences on omitted data and uncertainties; those beginning with "ERROR" also stand in the summary.
     k : coverage factor. reduced : certificate of the reduced model for changed inputs; None: full runs only.

@@ -116,10 +116,13 @@ class Predictions(Brief):
         tables = {
             pair: jacobian for pair, (status, jacobian) in zip(modal, answers, strict=True) if status[0] == FOLLOWED
         }
-        left = {(k, i): np.arange(len(queries[k][1])) for k, i in wanted if (k, i) not in tables}
         # A model that holds here may not follow some of the further effects: only these are simulated.
-        gaps = {pair: np.flatnonzero(~np.isfinite(jacobian).all(axis=0)) for pair, jacobian in tables.items()}
-        left |= {pair: columns for pair, columns in gaps.items() if len(columns)}
+        left = {(k, i): np.arange(len(queries[k][1])) for k, i in wanted if (k, i) not in tables}
+        left |= {
+            pair: columns
+            for pair, jacobian in tables.items()
+            if len(columns := np.flatnonzero(~np.isfinite(jacobian).all(axis=0)))
+        }
         questions = [
             (i, tuple(queries[k][1][column] for column in columns), queries[k][2]) for (k, i), columns in left.items()
         ]
