@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import dataclasses
 import functools
 import hashlib
 import json
 import shutil
 import sys
 import zipfile
-from collections.abc import Mapping
+from collections.abc import Hashable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -116,7 +117,15 @@ def plain(value: Any) -> Any:
         return [[plain(key), plain(entry)] for key, entry in value.items()]
     if isinstance(value, tuple | list):
         return [plain(entry) for entry in value]
-    return repr(value)
+    if isinstance(value, np.ndarray):
+        return [str(value.dtype), list(value.shape), hashlib.sha256(np.ascontiguousarray(value).data).hexdigest()]
+    # An unknown's text is long, and every question of a fit repeats dozens of them.
+    return _digest_of(value) if dataclasses.is_dataclass(value) and isinstance(value, Hashable) else repr(value)
+
+
+@functools.lru_cache(maxsize=4096, typed=True)
+def _digest_of(value: Hashable) -> str:
+    return digest(repr(value))
 
 
 def _study(study: StudyData) -> list[Any]:

@@ -19,6 +19,7 @@ from tyrefem.diagnose.fitting.fits import FittedSet, continued, first_fits, fitt
 from tyrefem.diagnose.fitting.gauss_newton import FitState, initial_state
 from tyrefem.diagnose.fitting.selection import ScoredSet, SelectionProblem, rivals_of_names
 from tyrefem.diagnose.inference.linear_model import LinearModel
+from tyrefem.diagnose.inference.set_evidences import SetEvidences
 from tyrefem.diagnose.unknowns.candidates import Candidate, Members, separate
 
 #: A set whose linear estimate is this far below the best is not fitted beside a discrepancy, nats.
@@ -293,9 +294,11 @@ class RankedBeside(Brief):
         of_fit = about.log_evidence(()) + problem.prior(members) - self.score(members)
 
         def estimate(model: LinearModel, kept: Members) -> None:
-            for candidate in (each for each in others if separate(each, kept)):
+            further = [each for each in others if separate(each, kept)]
+            evidences = SetEvidences(model.design, [(each,) for each in further]).log_evidence(model.overlap).tolist()
+            for candidate, evidence in zip(further, evidences, strict=True):
                 other = problem.ordered((*kept, candidate))
-                self._better(other, model.log_evidence((candidate,)) + problem.prior(other) - of_fit)
+                self._better(other, evidence + problem.prior(other) - of_fit)
 
         if len(members) < problem.settings.largest:
             estimate(about, members)

@@ -3,12 +3,19 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
 
 from tyrefem.diagnose.fitting.fits import FittedSet
 from tyrefem.diagnose.inference.linear_model import LinearModel
+from tyrefem.diagnose.inference.set_evidences import SetEvidences
 from tyrefem.diagnose.unknowns.candidates import Members
+
+Array = NDArray[Any]
 
 
 class Criterion(Protocol):
@@ -18,8 +25,8 @@ class Criterion(Protocol):
         """Criterion of a set fitted with the full model."""
         ...
 
-    def of_linear(self, model: LinearModel, members: Members) -> float:
-        """Criterion of a set in a linear model, without the constant -|d|^2/2 that all sets share."""
+    def of_linear(self, model: LinearModel, sets: Sequence[Members]) -> Array:
+        """(n_sets,) Criterion of sets in a linear model, without the constant -|d|^2/2 that all sets share."""
         ...
 
 
@@ -34,9 +41,9 @@ class LogEvidence:
         """Criterion of a set fitted with the full model."""
         return fit.log_evidence
 
-    def of_linear(self, model: LinearModel, members: Members) -> float:
-        """Criterion of a set in a linear model, without the constant -|d|^2/2 that all sets share."""
-        return model.log_evidence(members)
+    def of_linear(self, model: LinearModel, sets: Sequence[Members]) -> Array:
+        """(n_sets,) Criterion of sets in a linear model, without the constant -|d|^2/2 that all sets share."""
+        return SetEvidences(model.design, sets).log_evidence(model.overlap)
 
 
 @dataclass(frozen=True)
@@ -55,7 +62,8 @@ class BIC:
         k = sum(unknown in effects for unknown in fit.unknowns)
         return -fit.misfit / 2 - k * math.log(fit.readings) / 2
 
-    def of_linear(self, model: LinearModel, members: Members) -> float:
-        """Criterion of a set in a linear model, without the constant -|d|^2/2 that all sets share."""
-        k = sum(len(member.amplitudes) for member in members)
-        return -model.least_misfit(members) / 2 - model.constant - k * math.log(len(model.data)) / 2
+    def of_linear(self, model: LinearModel, sets: Sequence[Members]) -> Array:
+        """(n_sets,) Criterion of sets in a linear model, without the constant -|d|^2/2 that all sets share."""
+        k = np.array([sum(len(member.amplitudes) for member in members) for members in sets])
+        misfits = np.array([model.least_misfit(members) for members in sets])
+        return -misfits / 2 - model.constant - k * math.log(len(model.data)) / 2

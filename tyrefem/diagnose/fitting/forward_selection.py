@@ -74,7 +74,8 @@ def screened(problem: SelectionProblem, linear: LinearModel) -> list[tuple[float
     """The empty set, single effects and pairs with their scores in a linear model, best first."""
     sizes = range(min(problem.settings.largest, 2) + 1)
     sets = [members for size in sizes for members in sets_of(problem.candidates, size)]
-    return sorted(((problem.linear_score(linear, members), members) for members in sets), key=lambda pair: -pair[0])
+    scores = problem.linear_scores(linear, sets).tolist()
+    return sorted(zip(scores, sets, strict=True), key=lambda pair: -pair[0])
 
 
 class _Progress:
@@ -172,7 +173,7 @@ class _Progress:
         self._renewed.add(())
         self.fits[()] = problem.with_sensitivities(self.fits[()])
         about = problem.linear_about(self.fits[()], problem.candidates)
-        of_none = problem.linear_score(about, ())
+        of_none = float(problem.linear_scores(about, [()])[0])
         for score, members in screened(problem, about):
             if members:
                 self._raise_estimate(problem.ordered(members), self.score(()) + score - of_none)
@@ -232,13 +233,13 @@ class _Progress:
 
     def _extend(self, members: Members) -> None:
         """Estimate every set with one more effect in the linear model about the fit."""
-        problem, criterion = self.problem, self.problem.criterion
+        problem = self.problem
         others = [candidate for candidate in problem.candidates if separate(candidate, members)]
         about = problem.linear_about(self.fits[members], others)
-        of_part = criterion.of_linear(about, ())
-        for candidate in others:
+        of_part, *of_wholes = problem.criterion.of_linear(about, [(), *((other,) for other in others)]).tolist()
+        for candidate, of_whole in zip(others, of_wholes, strict=True):
             more = problem.ordered((*members, candidate))
-            gain = criterion.of_linear(about, (candidate,)) - of_part + problem.prior(more) - problem.prior(members)
+            gain = of_whole - of_part + problem.prior(more) - problem.prior(members)
             self._raise_estimate(more, self.score(members) + gain)
 
     def promising(self) -> list[Members]:

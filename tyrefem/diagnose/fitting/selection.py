@@ -9,6 +9,7 @@ from functools import cached_property
 from typing import NamedTuple, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
 from tyrefem.diagnose.data.residuals import Residuals
@@ -20,6 +21,7 @@ from tyrefem.diagnose.settings import DiagnosisSettings
 from tyrefem.diagnose.unknowns.candidates import Candidate, Members, SetPrior, separate
 from tyrefem.inputs.study import StudyData
 
+Array = NDArray[np.float64]
 Tick = Callable[[str], None]
 
 
@@ -108,9 +110,9 @@ class SelectionProblem(Brief):
         """ln(prior) + criterion of a fitted set."""
         return self.prior(self.ordered(fit.members)) + self.criterion.of_fit(fit)
 
-    def linear_score(self, model: LinearModel, members: Members) -> float:
-        """ln(prior) + criterion of a set in a linear model, without the constant that all sets share."""
-        return self.prior(members) + self.criterion.of_linear(model, members)
+    def linear_scores(self, model: LinearModel, sets: Sequence[Members]) -> Array:
+        """(n_sets,) ln(prior) + criterion of sets in a linear model, without the constant that all sets share."""
+        return np.array([self.prior(members) for members in sets]) + self.criterion.of_linear(model, sets)
 
     def fitted(self, sets: Sequence[Members], starts: Mapping[Members, FittedSet]) -> list[FittedSet]:
         """First fits with the full model; ``starts``: set -> fit of a subset to start from."""
@@ -185,8 +187,8 @@ class SelectionProblem(Brief):
         for member in (each for each in best.members if not each.presence):
             part = best.fit.without([member])
             members = self.ordered(part.members)
-            gain = self.criterion.of_linear(part.linear, ()) - self.criterion.of_linear(best.fit.linear, ())
-            score = best.score + gain + self.prior(members) - self.prior(best.members)
+            of_part, of_best = (self.criterion.of_linear(fit.linear, [()])[0] for fit in (part, best.fit))
+            score = best.score + float(of_part - of_best) + self.prior(members) - self.prior(best.members)
             known = rows.get(members)
             beyond = known is None or known.fit is None or score > known.score + settings.near_score
             if score > best.score - settings.leading_score and beyond:

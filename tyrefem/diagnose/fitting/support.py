@@ -14,6 +14,7 @@ from tyrefem.diagnose.data.residuals import Residuals
 from tyrefem.diagnose.fitting.fits import FittedSet, linear_about
 from tyrefem.diagnose.inference.evidence import posterior
 from tyrefem.diagnose.inference.linear_model import DesignMatrix, LinearModel
+from tyrefem.diagnose.inference.set_evidences import SetEvidences
 from tyrefem.diagnose.inference.shared_error import SharedError
 from tyrefem.diagnose.unknowns.candidates import Candidate, Members, separate
 from tyrefem.diagnose.unknowns.unknown import Unknown
@@ -93,12 +94,13 @@ def supports(
                 (*less.unknowns, *unknowns), len(less.unknowns), less.whitened(kept, np.hstack([less.J, further]))
             )
             linear = LinearModel(design, less.whitened(kept, less.d))
-            of_part = less.evidence(kept) - linear.log_evidence(())
-            for other in candidates:
-                if other == member or not separate(other, part):
-                    continue
+            others = [other for other in candidates if other != member and separate(other, part)]
+            evidences = SetEvidences(design, [(), *((other,) for other in others)]).log_evidence(linear.overlap)
+            gains = evidences[1:] - evidences[0]
+            of_part = less.evidence(kept)
+            for other, gain in zip(others, gains.tolist(), strict=True):
                 changed = frozenset((*part, other))
-                value = prior((*part, other)) + of_part + linear.log_evidence((other,))
+                value = prior((*part, other)) + of_part + gain
                 sets[changed] = max(value, sets.get(changed, -math.inf))
         total = float(np.logaddexp.reduce(list(sets.values())))
         for member in best.members:

@@ -33,6 +33,9 @@ class Candidate(Brief):
     unknowns: tuple[Unknown, ...]
     runs: tuple[str, ...] = ()
 
+    def __hash__(self) -> int:
+        return hash((self.name, self.choice, self.runs))
+
     def _title(self) -> str:
         return self.key
 
@@ -50,17 +53,17 @@ class Candidate(Brief):
         """The entry of the catalogue."""
         return catalogue()[self.name]
 
-    @property
+    @cached_property
     def amplitudes(self) -> tuple[Unknown, ...]:
         """The unknowns that are the size of the effect; at 0 the effect is absent."""
         return tuple(unknown for unknown in self.unknowns if unknown.parameter and unknown.parameter.prior.amplitude)
 
-    @property
+    @cached_property
     def presence(self) -> tuple[Unknown, ...]:
         """The unknown of an effect without amplitude: x = 1 if the effect is present, 0 if it is absent."""
         return tuple(unknown for unknown in self.unknowns if unknown.fixed)
 
-    @property
+    @cached_property
     def shapes(self) -> tuple[Unknown, ...]:
         """The unknowns that are shape parameters."""
         return tuple(

@@ -51,6 +51,10 @@ class Unknown:
     beside: tuple[tuple[str, float], ...] = ()
     kelvins: float = 0.0
 
+    def __hash__(self) -> int:
+        # Nearly always enough to tell unknowns apart; all fields would take ten times as long.
+        return hash((self.key, self.sd))
+
     @property
     def step(self) -> float:
         """Step of a difference quotient, towards the inside of the bounds."""
