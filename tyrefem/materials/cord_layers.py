@@ -22,8 +22,13 @@ Array = NDArray[np.float64]
 def region_thickness(section: Section, region: str) -> Array:
     """Smallest and largest thickness [m] of the layer within this region, over all its pieces."""
     section.require_region(region)
+    return np.array(_thickness_range(section, region))
+
+
+@functools.lru_cache(maxsize=256)
+def _thickness_range(section: Section, region: str) -> tuple[float, float]:
     if section.wrapping is not None and region == section.wrap:
-        return np.full(2, section.wrapping.thickness)
+        return section.wrapping.thickness, section.wrapping.thickness
     values = []
     for piece in section.pieces:
         if piece.region == region:
@@ -31,7 +36,13 @@ def region_thickness(section: Section, region: str) -> Array:
             stations = np.array([piece.start, *inside, *np.linspace(piece.start, piece.end, 30)])
             values.append(section.built_layers[piece.layer].thickness(stations))
     together = np.concatenate(values)
-    return np.array([together.min(), together.max()])
+    return float(together.min()), float(together.max())
+
+
+@functools.lru_cache(maxsize=256)
+def _greatest_radius(section: Section, region: str) -> float:
+    """Greatest radius of a region, m; studies with changed materials ask for that of the same section."""
+    return max(float(outline[:, 0].max()) for outline in section.outline(region))
 
 
 def check_cords_fit(card: MaterialCard, section: Section, region: str) -> None:
@@ -51,7 +62,7 @@ def check_cords_fit(card: MaterialCard, section: Section, region: str) -> None:
         raise error.within(field="cords") from None
     if cords.angle_radius is None or not cords.lift:
         return
-    furthest = max(float(outline[:, 0].max()) for outline in section.outline(region))
+    furthest = _greatest_radius(section, region)
     if not 0.2 <= cords.angle_radius / (section.outer_diameter / 2) <= 1.0:
         raise InputError(
             f"{cords.angle_radius:.4g} m is not on the tyre, whose outer radius is {section.outer_diameter / 2:.4g} m",
