@@ -49,18 +49,24 @@ def rivals_of_names(scored: Sequence[ScoredSet], settings: DiagnosisSettings) ->
     shares = np.exp(scores - np.logaddexp.reduce(scores))
     fitted = [row for row in scored if row.fit is not None]
     top = max(row.score for row in fitted)
+    estimates = np.array([-np.inf if row.fit is not None else row.score for row in scored])
+    rows_of: dict[Candidate, list[int]] = {}
+    for number, row in enumerate(scored):
+        for member in row.members:
+            rows_of.setdefault(member, []).append(number)
     starts: dict[Members, FittedSet | None] = {}
-    for member in dict.fromkeys(member for row in scored for member in row.members):
-        acts = np.array([member in row.members for row in scored])
-        estimated = [row for row in scored if row.fit is None and member not in row.members]
-        if shares[acts].sum() < settings.challenged_probability or not estimated:
+    for member, rows in rows_of.items():
+        others = estimates.copy()
+        others[rows] = -np.inf
+        number = int(np.argmax(others))
+        if shares[rows].sum() < settings.challenged_probability or others[number] == -np.inf:
             continue
-        best = max(estimated, key=lambda row: row.score)
+        best = scored[number]
         without = max((row.score for row in fitted if member not in row.members), default=-np.inf)
         if best.score > max(without, top - settings.name_score):
-            others = {member, *best.members}
+            together = {member, *best.members}
             wholes = [
-                (row.score, row.fit) for row in fitted if member in row.members and others.issuperset(row.members)
+                (row.score, row.fit) for row in fitted if member in row.members and together.issuperset(row.members)
             ]
             _, whole = max(wholes, key=lambda pair: pair[0], default=(0.0, None))
             starts[best.members] = None if whole is None or member.presence else whole.without([member])

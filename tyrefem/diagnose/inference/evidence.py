@@ -64,9 +64,8 @@ def posterior(gram: Array, overlap: Array, sd: Array, low: Array, high: Array) -
     log_evidence = float(right @ z / 2 - np.log(np.diag(factor[0])).sum())
     low_z, high_z = low / sd, high / sd
     spread = np.sqrt(np.diag(covariance_z))
-    for i in np.flatnonzero(np.isfinite(low) | np.isfinite(high)):
-        log_evidence += _log_mass((low_z[i] - z[i]) / spread[i], (high_z[i] - z[i]) / spread[i])
-        log_evidence -= _log_mass(low_z[i], high_z[i])
+    bounded = np.isfinite(low) | np.isfinite(high)
+    log_evidence += float(bounds_mass(z[bounded], spread[bounded], low_z[bounded], high_z[bounded]).sum())
     held = np.zeros(k, dtype=bool)
     for _ in range(k):
         beyond = (z < low_z - 1e-12) | (z > high_z + 1e-12)
