@@ -37,7 +37,7 @@ def files(folder: Path) -> set[str]:
 
 
 def run(folder: Path, *names: str, force: bool = False) -> None:
-    with results_folder(folder, "run", NAMES, force=force) as place:
+    with results_folder(folder, "run", NAMES, origin=None, force=force) as place:
         write(place, *names)
 
 
@@ -67,7 +67,7 @@ def test_a_second_run_clears_what_it_does_not_write_again(tmp_path: Path) -> Non
 def test_a_foreign_file_is_an_error_before_any_computing(tmp_path: Path, name: str) -> None:
     (tmp_path / name).parent.mkdir(exist_ok=True)
     (tmp_path / name).write_text("mine")
-    with pytest.raises(InputError, match=name), results_folder(tmp_path, "run", NAMES):
+    with pytest.raises(InputError, match=name), results_folder(tmp_path, "run", NAMES, origin=None):
         pytest.fail("computed")
     assert files(tmp_path) == {name}
     run(tmp_path, "readings.csv", force=True)
@@ -105,7 +105,7 @@ def test_an_input_is_never_written(tmp_path: Path) -> None:
 def test_an_input_outside_the_folder_is_never_written_either(tmp_path: Path) -> None:
     table = tmp_path / "table.csv"
     table.write_text("mine")
-    with reading(), results_folder(tmp_path / "out", "run", NAMES, inputs=[table]) as out:
+    with reading(), results_folder(tmp_path / "out", "run", NAMES, origin=None, inputs=[table]) as out:
         with pytest.raises(InputError, match="is an input"), atomic_path(out.parent / "table.csv") as temporary:
             temporary.write_text("lost")
         with pytest.raises(InputError, match="is an input"), atomic_folder(out.parent) as place:
@@ -117,28 +117,28 @@ def test_another_commands_results_are_not_mixed(tmp_path: Path) -> None:
     run(tmp_path, "readings.csv")
     with (
         pytest.raises(InputError, match="holds the results of 'tyrefem run'"),
-        results_folder(tmp_path, "compare", ("comparison.csv",)),
+        results_folder(tmp_path, "compare", ("comparison.csv",), origin=None),
     ):
         pytest.fail("computed")
-    with results_folder(tmp_path, "compare", ("comparison.csv",), force=True) as place:
+    with results_folder(tmp_path, "compare", ("comparison.csv",), origin=None, force=True) as place:
         write(place, "comparison.csv")
     assert files(tmp_path) == {"summary.json", "comparison.csv"}
 
 
 def test_a_failure_before_writing_leaves_no_trace(tmp_path: Path) -> None:
     out = tmp_path / "a" / "b"
-    with pytest.raises(ZeroDivisionError), results_folder(out, "run", NAMES, keeps=["store/*.json"]):
+    with pytest.raises(ZeroDivisionError), results_folder(out, "run", NAMES, origin=None, keeps=["store/*.json"]):
         raise ZeroDivisionError
     assert not (tmp_path / "a").exists()
     run(out, "readings.csv")
     before = summary(out)
-    with pytest.raises(ZeroDivisionError), results_folder(out, "run", NAMES, keeps=["store/*.json"]):
+    with pytest.raises(ZeroDivisionError), results_folder(out, "run", NAMES, origin=None, keeps=["store/*.json"]):
         marked_and_failing(out)
     assert summary(out) == before
 
 
 def test_while_it_writes_a_folder_is_not_complete(tmp_path: Path) -> None:
-    with pytest.raises(ZeroDivisionError), results_folder(tmp_path, "run", NAMES) as place:
+    with pytest.raises(ZeroDivisionError), results_folder(tmp_path, "run", NAMES, origin=None) as place:
         marked_and_failing(place, "readings.csv")
     assert summary(tmp_path)["complete"] is False
     assert summary(tmp_path)["files"] == ["readings.csv"]
@@ -149,7 +149,7 @@ def test_while_it_writes_a_folder_is_not_complete(tmp_path: Path) -> None:
 
 def test_a_killed_command_leaves_a_folder_that_is_used_again(tmp_path: Path) -> None:
     if not (child := os.fork()):
-        with results_folder(tmp_path, "run", NAMES) as place:
+        with results_folder(tmp_path, "run", NAMES, origin=None) as place:
             write(place, "readings.csv", "pictures/a.png")
             (place / "pictures" / ".tyrefem-01234567.png").write_text("half")
             os._exit(9)
@@ -161,7 +161,7 @@ def test_a_killed_command_leaves_a_folder_that_is_used_again(tmp_path: Path) -> 
 
 def test_finished_work_stays_for_another_try(tmp_path: Path) -> None:
     def attempt(name: str) -> None:
-        with results_folder(tmp_path, "blind", ("blind.json",), keeps=["cases/*.json"]) as place:
+        with results_folder(tmp_path, "blind", ("blind.json",), origin=None, keeps=["cases/*.json"]) as place:
             write(place, f"cases/{name}.json")
 
     attempt("a")
@@ -171,7 +171,10 @@ def test_finished_work_stays_for_another_try(tmp_path: Path) -> None:
 
 
 def test_two_commands_at_once_are_one_too_many(tmp_path: Path) -> None:
-    with results_folder(tmp_path, "run", NAMES), pytest.raises(InputError, match="another command is writing"):
+    with (
+        results_folder(tmp_path, "run", NAMES, origin=None),
+        pytest.raises(InputError, match="another command is writing"),
+    ):
         run(tmp_path, "readings.csv")
     run(tmp_path, "readings.csv")
     assert files(tmp_path) == {"summary.json", "readings.csv"}
@@ -196,7 +199,7 @@ def test_ctrl_c_while_the_folder_is_locked_leaves_nothing(tmp_path: Path, monkey
 
 
 def test_an_interrupted_answer_says_so_itself(tmp_path: Path) -> None:
-    with results_folder(tmp_path, "run", NAMES) as place:
+    with results_folder(tmp_path, "run", NAMES, origin=None) as place:
         write(place, "readings.csv", complete=False)
     assert summary(tmp_path)["complete"] is False
 
@@ -216,8 +219,75 @@ def test_what_is_no_folder_is_refused(tmp_path: Path, make: object, message: str
 
 def test_this_folder_is_a_folder_too(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    with results_folder(".", "run", NAMES) as place, atomic_folder(place) as temporary:
+    with results_folder(".", "run", NAMES, origin=None) as place, atomic_folder(place) as temporary:
         (temporary / "readings.csv").write_text("1")
         (temporary / "summary.json").write_text('{"answer": 2}')
     assert files(tmp_path) == {"summary.json", "readings.csv"}
     assert summary(tmp_path)["answer"] == 2
+
+
+class Maker:
+    """What makes the results of a test."""
+
+    def names(self, folder: Path) -> tuple[str, ...]:
+        return ("maker.toml",)
+
+    def write(self, folder: Path) -> tuple[str, ...]:
+        with atomic_path(folder / "maker.toml") as temporary:
+            temporary.write_text("")
+        return ("maker.toml",)
+
+    def summary(self) -> dict[str, Any]:
+        return {"maker": "a study"}
+
+
+def write_readings(folder: Path) -> None:
+    with atomic_path(folder / "readings.csv") as temporary:
+        temporary.write_text("")
+
+
+def write_readings_and_fail(folder: Path) -> None:
+    write_readings(folder)
+    raise ZeroDivisionError
+
+
+def test_the_folder_writes_what_made_its_results(tmp_path: Path) -> None:
+    with results_folder(tmp_path, "run", NAMES, origin=Maker()) as place:
+        write_readings(place)
+    record = summary(tmp_path)
+    assert record["files"] == ["maker.toml", "readings.csv"]
+    assert (record["maker"], record["complete"]) == ("a study", True)
+
+
+def test_a_summary_of_the_command_stays(tmp_path: Path) -> None:
+    with results_folder(tmp_path, "run", NAMES, origin=Maker()) as place:
+        write(place, "readings.csv")
+    assert summary(tmp_path)["answer"] == 1.0
+    assert "maker" not in summary(tmp_path)
+    assert (tmp_path / "maker.toml").is_file()
+
+
+def test_results_left_by_a_failure_tell_what_made_them(tmp_path: Path) -> None:
+    with pytest.raises(ZeroDivisionError), results_folder(tmp_path, "run", NAMES, origin=Maker()) as place:
+        write_readings_and_fail(place)
+    record = summary(tmp_path)
+    assert (record["maker"], record["complete"]) == ("a study", False)
+    assert (tmp_path / "maker.toml").is_file()
+
+
+def test_without_results_nothing_of_what_makes_them_is_written(tmp_path: Path) -> None:
+    keeps = ["store/*.csv"]
+    with (
+        pytest.raises(ZeroDivisionError),
+        results_folder(tmp_path / "out", "run", NAMES, origin=Maker(), keeps=keeps) as place,
+    ):
+        write_readings_and_fail(place / "store")
+    assert files(tmp_path / "out") == {"store/readings.csv", "summary.json"}
+    assert "maker" not in summary(tmp_path / "out")
+
+
+def test_a_users_file_in_the_place_of_what_makes_results_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "maker.toml").write_text("mine")
+    refused = pytest.raises(InputError, match=r"maker\.toml")
+    with refused, results_folder(tmp_path, "run", NAMES, origin=Maker()):
+        pass

@@ -19,6 +19,7 @@ from tyrefem.cli.common import (
 )
 from tyrefem.cli.progress import progress
 from tyrefem.cli.shell import answer_with, say
+from tyrefem.output import SUMMARY, write_json
 from tyrefem.output.folder import results_folder
 
 
@@ -49,7 +50,7 @@ def blind(
     """
     from tyrefem.api import study as load
     from tyrefem.diagnose.blind.rates import NEEDS, run_blind
-    from tyrefem.inputs.origin import study_names, write_origin
+    from tyrefem.inputs.origin import StudyOrigin
     from tyrefem.reports.blind import FILES, save
     from tyrefem.variants.answer_store import PROGRESS
 
@@ -57,14 +58,15 @@ def blind(
     NEEDS.check(loaded)
     warn(loaded.warnings)
     place = out or Path("results") / f"{loaded.name}-blind"
-    names, keeps = (*FILES, *study_names(loaded, place)), ["cases/*.json", f"{PROGRESS}/*/*.npz"]
+    origin = StudyOrigin(loaded, simulated=True, random_seed=seed)
+    keeps = ["cases/*.json", f"{PROGRESS}/*/*.npz"]
     with (
-        results_folder(place, "blind", names, force=force, keeps=keeps) as folder,
+        results_folder(place, "blind", FILES, origin=origin, force=force, keeps=keeps) as folder,
         progress(f"{loaded.name}: {cases} cases", 1.0) as step,
     ):
         cores, tick = workers or os.cpu_count() or 1, lambda done: step(done / cases)
         result = run_blind(loaded, cases, seed, folder, cores, tick, reduced=reduced, truth=data_model)
-        write_origin(loaded, folder, list(result.plugins), tolerance=loaded.tolerance, random_seed=seed)
+        write_json(origin.using(list(result.plugins)).summary(), folder / SUMMARY)
         save(result, folder)
     answer_with(result.to_dict())
     for line in result.words():

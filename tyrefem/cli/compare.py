@@ -58,7 +58,7 @@ def compare(
     """
     from tyrefem.api import study as load
     from tyrefem.compare.validation import NEEDS
-    from tyrefem.inputs.origin import study_names, write_origin
+    from tyrefem.inputs.origin import StudyOrigin
     from tyrefem.reports.comparison import FILES
     from tyrefem.variants.answer_store import PROGRESS, AnswerStore
 
@@ -67,8 +67,9 @@ def compare(
     warn(loaded.warnings)
     place = out or Path("results") / f"{loaded.name}-compare"
     read = [table] if table else [entry.table for entry in loaded.measured]
-    names, keeps = (*FILES, *study_names(loaded, place)), [f"{PROGRESS}/*/*.npz"]
-    with results_folder(place, "compare", names, inputs=read, force=force, keeps=keeps) as folder:
+    origin = StudyOrigin(loaded, simulated=True)
+    keeps = [f"{PROGRESS}/*/*.npz"]
+    with results_folder(place, "compare", FILES, origin=origin, inputs=read, force=force, keeps=keeps) as folder:
         store = AnswerStore(folder / PROGRESS)
         with (
             keeping(lambda: store.kept),
@@ -87,7 +88,6 @@ def compare(
                 store=store,
                 begin=notify,
             )
-            write_origin(loaded, folder, tolerance=loaded.tolerance)
             comparison.save(folder)
         store.clear()
     answer_with(comparison.to_dict())

@@ -28,7 +28,7 @@ def print_critical_speeds(
     rise: bool = False,
 ) -> None:
     """Work out, write and print the critical speeds of all pressures and temperatures."""
-    from tyrefem.inputs.origin import study_names, write_origin
+    from tyrefem.inputs.origin import StudyOrigin
     from tyrefem.mechanics.rolling import amplification
     from tyrefem.mechanics.rolling.critical_speed import NEEDS, critical_speed
     from tyrefem.quantity import Unit
@@ -43,7 +43,7 @@ def print_critical_speeds(
     warn(study.warnings)
     place = out or Path("results") / f"{study.name}-critical-speed"
     with (
-        results_folder(place, "critical-speed", (*FILES, *study_names(study, place)), force=force) as folder,
+        results_folder(place, "critical-speed", FILES, origin=StudyOrigin(study), force=force) as folder,
         progress(f"{study.name}: critical speed"),
     ):
         try:
@@ -57,7 +57,6 @@ def print_critical_speeds(
             ]
         except InputError as error:
             raise _placed(error, study, options) from None
-        write_origin(study, folder)
         write_files(results, folder, rises=rises, pictures=pictures)
     rows = {"study": study.name, "critical": [result.row() for result in results]}
     answer_with({**rows, "rises": [each.summary() for each in rises]} if rise else rows)

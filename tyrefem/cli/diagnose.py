@@ -24,6 +24,7 @@ from tyrefem.cli.progress import stages
 from tyrefem.cli.shell import answer_with, say
 from tyrefem.errors import InputError, nearest
 from tyrefem.interruption import keeping
+from tyrefem.output import SUMMARY, write_json
 from tyrefem.output.folder import results_folder
 
 #: More processes gain little, because the fits wait for each other.
@@ -70,7 +71,7 @@ def diagnose(
     from tyrefem.diagnose.options import STRATEGIES
     from tyrefem.diagnose.workflow import NEEDS
     from tyrefem.effects import use_effects
-    from tyrefem.inputs.origin import study_names, write_origin
+    from tyrefem.inputs.origin import StudyOrigin
     from tyrefem.reports.diagnosis import FILES
     from tyrefem.variants.answer_store import PROGRESS
 
@@ -83,8 +84,9 @@ def diagnose(
     warn(loaded.warnings)
     place = out or Path("results") / f"{loaded.name}-diagnosis"
     read = [table] if table else [entry.table for entry in loaded.measured]
-    names, keeps = (*FILES, *study_names(loaded, place)), [f"{PROGRESS}*/*/*.npz"]
-    with results_folder(place, "diagnose", names, inputs=read, force=force, keeps=keeps) as folder:
+    origin = StudyOrigin(loaded, simulated=True)
+    keeps = [f"{PROGRESS}*/*/*.npz"]
+    with results_folder(place, "diagnose", FILES, origin=origin, inputs=read, force=force, keeps=keeps) as folder:
         store = ProgressStore(folder / PROGRESS)
         with keeping(lambda: store.kept), stages() as tick:
             tick("reading", 0, 0)
@@ -103,7 +105,7 @@ def diagnose(
             )
             tick("drawing", 0, 0)
             used = [candidate.name for candidate in diagnosis.candidates]
-            write_origin(loaded, folder, used, tolerance=loaded.tolerance)
+            write_json(origin.using(used).summary(), folder / SUMMARY)
             page = diagnosis.save(folder)
         store.clear()
     answer_with(diagnosis.to_dict())

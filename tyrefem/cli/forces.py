@@ -73,7 +73,7 @@ def forces(
 ) -> None:
     """Forces over load, slip, slip angle and camber; a Magic Formula that fits them, as a .tir file."""
     from tyrefem.api import study as load_study
-    from tyrefem.inputs.origin import study_names, write_origin
+    from tyrefem.inputs.origin import StudyOrigin
     from tyrefem.mechanics.rolling.force_table import tyre_forces
     from tyrefem.mechanics.rolling.roll import NEEDS
     from tyrefem.reports.forces import FILES, summary, write_files
@@ -90,7 +90,7 @@ def forces(
     warn(loaded.warnings)
     place = out or Path("results") / f"{loaded.name}-forces"
     with (
-        results_folder(place, "forces", (*FILES, *study_names(loaded, place)), force=force) as folder,
+        results_folder(place, "forces", FILES, origin=StudyOrigin(loaded), force=force) as folder,
         stages() as tick,
     ):
         tick(f"{loaded.name}: inflated and pressed", 0.0, 0.0)
@@ -98,7 +98,6 @@ def forces(
             result = tyre_forces(
                 loaded, progress=lambda done, total: tick(f"{loaded.name}: rolling", done, total), **given
             )
-            write_origin(loaded, folder)
             write_files(result, folder, pictures=pictures)
         except InputError as error:
             raise _placed(error, given, loaded) from None

@@ -57,8 +57,8 @@ def isolability(
     from tyrefem.diagnose.layout.calibration import calibrated
     from tyrefem.diagnose.layout.isolability import NEEDS, planned_sensitivities
     from tyrefem.diagnose.layout.isolability import isolability as found_by
-    from tyrefem.inputs.origin import study_names, write_origin
-    from tyrefem.output import atomic_folder, jsonable
+    from tyrefem.inputs.origin import StudyOrigin
+    from tyrefem.output import SUMMARY, atomic_folder, jsonable, write_json
     from tyrefem.reports.calibration import save
     from tyrefem.reports.isolability import picture
     from tyrefem.variants.answer_store import PROGRESS
@@ -68,8 +68,9 @@ def isolability(
     warn(loaded.warnings)
     count = workers or min(os.cpu_count() or 1, 4)
     place = out or Path("results") / f"{loaded.name}-isolability"
-    names, keeps = (*FILES, *study_names(loaded, place)), ["cases/*.json", f"{PROGRESS}/*/*.npz"]
-    with results_folder(place, "isolability", names, force=force, keeps=keeps) as folder:
+    origin = StudyOrigin(loaded, simulated=True, random_seed=None if cases is None else seed)
+    keeps = ["cases/*.json", f"{PROGRESS}/*/*.npz"]
+    with results_folder(place, "isolability", FILES, origin=origin, force=force, keeps=keeps) as folder:
         store = ProgressStore(folder / PROGRESS)
         with keeping(lambda: store.kept):
             with progress(f"{loaded.name}: sensitivities", 1.0) as step:
@@ -85,13 +86,7 @@ def isolability(
                     if fitted:
                         by_fits = fitted_cases(loaded, known, cases, seed, folder / CASES, count, tick)
                     calibration = calibrated(loaded, known, cases, seed, tick, by_fits)
-            write_origin(
-                loaded,
-                folder,
-                list(result.plugins),
-                tolerance=loaded.tolerance,
-                random_seed=None if cases is None else seed,
-            )
+            write_json(origin.using(list(result.plugins)).summary(), folder / SUMMARY)
             with atomic_folder(folder) as temporary:
                 result.table.to_csv(temporary / "isolability.csv", index=False, lineterminator="\n")
                 text = json.dumps(jsonable(result.to_dict()), indent=1, ensure_ascii=False, allow_nan=False)

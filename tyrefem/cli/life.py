@@ -49,7 +49,7 @@ def life(
     from tyrefem.fatigue.life import check
     from tyrefem.fatigue.life import life as life_of
     from tyrefem.fatigue.sensitivity import shifts, shifts_of
-    from tyrefem.inputs.origin import study_names, write_study_beside
+    from tyrefem.inputs.origin import StudyOrigin
     from tyrefem.reports.life import FILES, words, write_files
 
     given = None if temperature is None else _temperature(temperature)
@@ -59,10 +59,9 @@ def life(
     check(loaded)
     warn(loaded.warnings)
     place = out or Path("results") / f"{loaded.name}-life"
-    with results_folder(place, "life", (*FILES, *study_names(loaded, place)), force=force) as folder:
+    with results_folder(place, "life", FILES, origin=StudyOrigin(loaded), force=force) as folder:
         with progress(f"{loaded.name}: life", loaded.card.drive.end) as step:
             computed = life_of(loaded, temperature=given, plateau=plateau, progress=step)
-        write_study_beside(loaded, folder)
         write_files(computed, folder, pictures=pictures, vtk=vtk)
         moved: tuple[LifeShift, ...] = ()
         if sensitivity:

@@ -45,7 +45,7 @@ def modes(
     """Natural frequencies and modes of the inflated, unloaded tyre, with its rim held; with --speed it rotates."""
     from tyrefem.api import study as load
     from tyrefem.inputs.drive import FASTEST
-    from tyrefem.inputs.origin import study_names, write_origin
+    from tyrefem.inputs.origin import StudyOrigin
     from tyrefem.mechanics.footprint.natural_frequencies import NEEDS, natural_frequencies
     from tyrefem.mechanics.rolling.rotating_modes import rotating_frequencies
     from tyrefem.reports.modes import FILES, write_files
@@ -58,7 +58,7 @@ def modes(
     warn(loaded.warnings)
     place = out or Path("results") / f"{loaded.name}-modes"
     with (
-        results_folder(place, "modes", (*FILES, *study_names(loaded, place)), force=force) as folder,
+        results_folder(place, "modes", FILES, origin=StudyOrigin(loaded), force=force) as folder,
         progress(f"{loaded.name}: natural frequencies"),
     ):
         try:
@@ -78,7 +78,6 @@ def modes(
             field = "drive.phases.0.pressure" if error.field == "pressure" and given is None else error.field
             placed = InputError(error.message, field=field, file=error.file or loaded.file)
             raise error if error.file else loaded.as_written(placed) from None
-        write_origin(loaded, folder)
         write_files(result, folder, pictures=pictures)
     answer_with(result.summary())
     say(_words(result))

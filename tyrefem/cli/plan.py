@@ -23,6 +23,7 @@ from tyrefem.cli.progress import stages
 from tyrefem.cli.shell import answer_with, say
 from tyrefem.errors import InputError
 from tyrefem.interruption import keeping
+from tyrefem.output import SUMMARY, write_json
 from tyrefem.output.folder import results_folder
 
 #: More processes gain little.
@@ -53,7 +54,7 @@ def plan(
     from tyrefem.api import study as load
     from tyrefem.diagnose.forward.evaluations import ProgressStore
     from tyrefem.diagnose.words.set_posteriors import POSTERIOR
-    from tyrefem.inputs.origin import study_names, write_origin
+    from tyrefem.inputs.origin import StudyOrigin
     from tyrefem.plan.information import SEED
     from tyrefem.plan.workflow import NEEDS
     from tyrefem.reports.plan import FILES
@@ -67,8 +68,9 @@ def plan(
     warn(loaded.warnings)
     place = out or Path("results") / f"{loaded.name}-plan"
     read = [] if after is None else [after / POSTERIOR] if is_folder else [after]
-    names, keeps = (*FILES, *study_names(loaded, place)), [f"{PROGRESS}*/*/*.npz"]
-    with results_folder(place, "plan", names, inputs=read, force=force, keeps=keeps) as folder:
+    origin = StudyOrigin(loaded, simulated=True, random_seed=SEED)
+    keeps = [f"{PROGRESS}*/*/*.npz"]
+    with results_folder(place, "plan", FILES, origin=origin, inputs=read, force=force, keeps=keeps) as folder:
         store = ProgressStore(folder / PROGRESS)
         with keeping(lambda: store.kept), stages() as tick:
             table = after is not None and not is_folder
@@ -81,7 +83,7 @@ def plan(
                 rename=renamed(rename) if table else None,
             )
             tick("drawing", 0, 0)
-            write_origin(loaded, folder, result.to_dict()["plugins"], tolerance=loaded.tolerance, random_seed=SEED)
+            write_json(origin.using(result.to_dict()["plugins"]).summary(), folder / SUMMARY)
             page = result.save(folder)
         store.clear()
     answer_with(result.to_dict())

@@ -86,7 +86,7 @@ def press(
     """Inflate the tyre by finite elements and press it on the road; default values are of the drive's first phase."""
     from tyrefem.api import study as load_study
     from tyrefem.cli.critical_speed import print_critical_speeds
-    from tyrefem.inputs.origin import study_names, write_origin
+    from tyrefem.inputs.origin import StudyOrigin
     from tyrefem.mechanics.footprint.press import NEEDS
     from tyrefem.mechanics.rolling.press import press as pressed_by
     from tyrefem.reports.press import FILES, write_files
@@ -119,7 +119,7 @@ def press(
     warn(loaded.warnings)
     place = out or Path("results") / f"{loaded.name}-press"
     with (
-        results_folder(place, "press", (*FILES, *study_names(loaded, place)), force=force) as folder,
+        results_folder(place, "press", FILES, origin=StudyOrigin(loaded), force=force) as folder,
         progress(f"{loaded.name}: inflated and pressed"),
     ):
         try:
@@ -130,7 +130,6 @@ def press(
             curve = result.curve()
         except InputError as error:
             raise _placed(error, given, loaded) from None
-        write_origin(loaded, folder)
         write_files(result, folder, places, curve, pictures=pictures, vtk=vtk)
     if result.footprint.unstable and result.turning is None:
         many = ", ".join(map(str, result.footprint.unstable))

@@ -50,7 +50,9 @@ def simulate(
     if seed is not None and seed < 0:
         raise InputError("must not be negative", field="--seed")
     with (
-        results_folder(place, "rig simulate", simulation_files(card), inputs=beside(card, file), force=force) as folder,
+        results_folder(
+            place, "rig simulate", simulation_files(card), origin=None, inputs=beside(card, file), force=force
+        ) as folder,
         progress(f"{_name(file)}: simulated tests"),
     ):
         done = rigs.simulate(file, every=step, seed=seed)
@@ -97,7 +99,7 @@ def identify(
     count = 0
     total = _USUAL * len(tests)
     with results_folder(
-        out or Path("results") / f"rig-{_name(file)}-identified", "rig identify", FILES, force=force
+        out or Path("results") / f"rig-{_name(file)}-identified", "rig identify", FILES, origin=None, force=force
     ) as folder:
         with progress(f"{_name(file)}: computed tests", total) as step:
 
@@ -143,7 +145,7 @@ def layers(
     tests = rigs.read(card, tables_of(card, file, tables)) if tables else ()
     counts = range(1, min(most, len(card.layers)) + 1)
     place, drawn = out or Path("results") / f"rig-{_name(file)}-layers", None if tests else seed
-    with results_folder(place, "rig layers", LAYER_FILES, force=force) as folder:
+    with results_folder(place, "rig layers", LAYER_FILES, origin=None, force=force) as folder:
         finished: dict[int, Any] = {}
         try:
             with progress(f"{_name(file)}: layers", counts[-1]) as step:

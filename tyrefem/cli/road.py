@@ -219,7 +219,7 @@ def figures(
 
     literature = _paper_table(1)
     points = list(zip(literature["speed_m_s"], literature["literature_Hc_W_m2K"], strict=True))
-    with results_folder(out, "road figures", ("figure-4.png", "figure-5.png"), force=force) as folder:
+    with results_folder(out, "road figures", ("figure-4.png", "figure-5.png"), origin=None, force=force) as folder:
         _save(film_figure([0.14], points), folder / "figure-4.png")
         _save(film_figure([0.10, 0.12, 0.14, 0.16, 0.18]), folder / "figure-5.png")
     answer_with({"pictures": [folder / "figure-4.png", folder / "figure-5.png"]})

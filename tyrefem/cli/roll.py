@@ -86,7 +86,7 @@ def roll(
 ) -> None:
     """Roll the tyre with friction: forces, moments, slip and friction power; several slips give a curve."""
     from tyrefem.api import study as load_study
-    from tyrefem.inputs.origin import study_names, write_origin
+    from tyrefem.inputs.origin import StudyOrigin
     from tyrefem.mechanics.rolling.roll import NEEDS
     from tyrefem.mechanics.rolling.roll import roll as rolled_by
     from tyrefem.mechanics.rolling.slip_curve import slip_curve
@@ -113,7 +113,7 @@ def roll(
     warn(loaded.warnings)
     place = out or Path("results") / f"{loaded.name}-roll"
     with (
-        results_folder(place, "roll", (*FILES, *study_names(loaded, place)), force=force) as folder,
+        results_folder(place, "roll", FILES, origin=StudyOrigin(loaded), force=force) as folder,
         progress(f"{loaded.name}: rolling"),
     ):
         result: RolledStudy | SlipCurve
@@ -127,7 +127,6 @@ def roll(
         except InputError as error:
             options = {name: option for name, (option, _) in {**OPTIONS, **VARIED}.items()} | {"motion": "--motion"}
             raise placed(error, options, given, loaded) from None
-        write_origin(loaded, folder)
         if several:
             write_curve(curve, folder, pictures=pictures)
         else:

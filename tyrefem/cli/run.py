@@ -43,20 +43,25 @@ def run(
     A study with a table of cases runs all cases, or the case of --case, and writes one table.
     """
     from tyrefem.api import study as load
+    from tyrefem.inputs.origin import StudyOrigin
     from tyrefem.reports.campaign import campaign_files
     from tyrefem.reports.run_files import run_files
 
     values = settings(changes)
     loaded = load(study, values, case)
     place = out or _usual_place(loaded)
-    tables = [entry.table for entry in loaded.measured]
+    given: dict[str, Any] = {
+        "origin": StudyOrigin(loaded, simulated=True),
+        "inputs": [entry.table for entry in loaded.measured],
+        "force": force,
+    }
     if loaded.is_campaign:
         campaign = loaded.campaign()
         _refuse_overlaid(campaign, values)
-        with results_folder(place, "run", campaign_files(campaign, place), inputs=tables, force=force) as folder:
+        with results_folder(place, "run", campaign_files(campaign, place), **given) as folder:
             _campaign(campaign, folder, pictures, vtk, revolved, parquet)
     else:
-        with results_folder(place, "run", run_files(loaded, place), inputs=tables, force=force) as folder:
+        with results_folder(place, "run", run_files(loaded, place), **given) as folder:
             _single(loaded, folder, pictures, vtk, revolved, parquet)
         answer_with(folder / "summary.json")
 

@@ -29,7 +29,7 @@ def schema(
 
     with progress("schemas"):
         made = texts()
-    with results_folder(out, "schema", [*made], force=force) as folder:
+    with results_folder(out, "schema", [*made], origin=None, force=force) as folder:
         for name, text in made.items():
             with atomic_path(folder / name) as temporary:
                 temporary.write_text(text, encoding="utf-8")

@@ -48,7 +48,7 @@ def strain(
 ) -> None:
     """Run a study with every strain law; compare strain energy by region and temperatures."""
     from tyrefem.api import study as load_study
-    from tyrefem.inputs.origin import study_names, write_origin
+    from tyrefem.inputs.origin import StudyOrigin
     from tyrefem.output import atomic_folder, write_json
     from tyrefem.simulation.law_comparison import NEEDS, compare_laws, compared_laws
 
@@ -60,14 +60,14 @@ def strain(
     chosen = load_study(study, settings(changes), case)
     NEEDS.check(chosen)
     warn(chosen.warnings)
+    origin = StudyOrigin(chosen, simulated=True).using(list(wanted))
     place = out or Path("results") / f"{chosen.name}-strain"
     with (
-        results_folder(place, "strain", (*FILES, *study_names(chosen, place)), force=force) as folder,
+        results_folder(place, "strain", FILES, origin=origin, force=force) as folder,
         progress(f"{chosen.name}: {', '.join(wanted)}"),
     ):
         comparison = compare_laws(chosen, wanted)
         summary = comparison.summary()
-        write_origin(chosen, folder, list(wanted), tolerance=chosen.tolerance)
         with atomic_folder(folder) as temporary:
             write_json(summary, temporary / "strain.json")
             comparison.table().to_csv(temporary / "strain.csv", index=False)

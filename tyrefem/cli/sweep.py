@@ -181,6 +181,7 @@ def sweep(
     the same command continues an interrupted one.
     """
     from tyrefem.cli.sweep_flags import computed_design, questions, questions_of_flags
+    from tyrefem.inputs.origin import StudyOrigin
     from tyrefem.mechanics.cautions import warnings_of
     from tyrefem.quantity import parse
     from tyrefem.reports.sweep_files import file_names, kept_names, save
@@ -200,9 +201,10 @@ def sweep(
     name, wanted = questions(study, given, settings(changes), case)
     refuse_unknown(wanted.plan, vtk or ())
     warn(warnings_of(wanted.study))
+    origin = StudyOrigin(wanted.study, simulated=True, random_seed=wanted.card.seed)
     place = out or Path("results") / f"{name}-sweep"
     with (
-        results_folder(place, "sweep", file_names(wanted.study, place), force=force, keeps=kept_names()) as folder,
+        results_folder(place, "sweep", file_names(), origin=origin, force=force, keeps=kept_names()) as folder,
         stages() as tick,
     ):
         kept = f"finished variants are in {folder}; the same command resumes from there"

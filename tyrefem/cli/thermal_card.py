@@ -38,7 +38,9 @@ def thermal_card(
     card = ThermalCard.check(data, path)
     name = path.resolve().parent.name if path.name == "thermal.toml" else path.stem
     with (
-        results_folder(out or Path("results") / f"{name}-thermal", "thermal-card", FILES, force=force) as folder,
+        results_folder(
+            out or Path("results") / f"{name}-thermal", "thermal-card", FILES, origin=None, force=force
+        ) as folder,
         progress(f"{name}: identified"),
     ):
         try:

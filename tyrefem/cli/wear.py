@@ -63,7 +63,7 @@ def wear(
     Slip is that of the options. Without them, a study with boundaries.sliding = 'rolling' wears by its drive.
     """
     from tyrefem.api import study as load
-    from tyrefem.inputs.origin import study_names, write_study_beside
+    from tyrefem.inputs.origin import StudyOrigin
     from tyrefem.mechanics.rolling.roll import NEEDS, roll
     from tyrefem.reports.wear import FILES, words, write_files
     from tyrefem.wear.drive_wear import drive_wear
@@ -84,7 +84,7 @@ def wear(
     given = {**DEFAULTS, **given}
     warn(loaded.warnings)
     place = out or Path("results") / f"{loaded.name}-wear"
-    with results_folder(place, "wear", (*FILES, *study_names(loaded, place)), force=force) as folder:
+    with results_folder(place, "wear", FILES, origin=StudyOrigin(loaded), force=force) as folder:
         try:
             with progress(f"{loaded.name}: rolling"):
                 rolled = None if of_drive else roll(loaded, **given)
@@ -92,7 +92,6 @@ def wear(
             worn = worn_section(loaded, worn_off, kilometres) if distance is not None else None
         except InputError as error:
             raise placed(error, {name: option for name, (option, _) in OPTIONS.items()}, given, loaded) from None
-        write_study_beside(loaded, folder)
         write_files(loaded, rolled, worn_off, folder, worn, pictures=pictures)
     answer_with(folder / "summary.json")
     say(words(loaded, rolled, worn_off))

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tyrefem.inputs.study_plugins import plugin_summary
-from tyrefem.output import SUMMARY, versions, write_json
+from tyrefem.output import versions
 
 if TYPE_CHECKING:
     from tyrefem.inputs.study import StudyData
@@ -15,40 +16,52 @@ if TYPE_CHECKING:
 STUDY = "study.toml"
 
 
-def study_names(study: StudyData, folder: str | Path) -> tuple[str, ...]:
-    """Name of the study's file in a folder of results; empty where the study's own file stands in its place."""
-    target = Path(folder) / STUDY
-    return () if study.file is not None and target.resolve() == study.file.resolve() else (STUDY,)
-
-
-def write_study_beside(study: StudyData, folder: Path) -> list[str]:
-    """Write the study into a folder of results, unless its own file stands there; return the name."""
-    names = list(study_names(study, folder))
-    for name in names:
-        study.save(folder / name)
-    return names
-
-
-def origin(
-    study: StudyData, *also: Any, tolerance: float | None = None, random_seed: int | None = None
-) -> dict[str, Any]:
-    """What made a result: study, mesh, versions, plugins, seed and the study's data with all changes.
+@dataclass(frozen=True)
+class StudyOrigin:
+    """The study that makes a folder of results: an `Origin` of `results_folder`.
 
     Parameters
     ----------
-    also : plain data that may name more plugins. tolerance : of the time steps, K; None: nothing is simulated.
+    simulated : whether temperatures are simulated, with the study's tolerance of the time steps.
     random_seed : None: nothing is random.
+    used : plain data that may name more plugins than the study.
     """
-    return {
-        "study": study.name,
-        "title": study.title,
-        **({} if tolerance is None else {"tolerance_K": tolerance}),
-        "mesh": mesh_summary(study),
-        "versions": versions(),
-        **plugin_summary(study, *also),
-        "random_seed": random_seed,
-        "input": dict(study.data),
-    }
+
+    study: StudyData
+    simulated: bool = False
+    random_seed: int | None = None
+    used: tuple[Any, ...] = ()
+
+    def using(self, *data: Any) -> StudyOrigin:
+        """The same with the plugins that ``data`` name."""
+        return replace(self, used=(*self.used, *data))
+
+    def names(self, folder: Path) -> tuple[str, ...]:
+        """Name of the study's file in a folder of results; empty where the study's own file stands in its place."""
+        target, file = folder / STUDY, self.study.file
+        return () if file is not None and target.resolve() == file.resolve() else (STUDY,)
+
+    def write(self, folder: Path) -> tuple[str, ...]:
+        """Write the study into a folder, unless its own file stands there; return the names."""
+        names = self.names(folder)
+        for name in names:
+            self.study.save(folder / name)
+        return names
+
+    def summary(self) -> dict[str, Any]:
+        """What made a result: study, tolerance in K, mesh, versions, plugins, seed, and the study's data with all
+        changes."""
+        study = self.study
+        return {
+            "study": study.name,
+            "title": study.title,
+            **({"tolerance_K": study.tolerance} if self.simulated else {}),
+            "mesh": mesh_summary(study),
+            "versions": versions(),
+            **plugin_summary(study, *self.used),
+            "random_seed": self.random_seed,
+            "input": dict(study.data),
+        }
 
 
 def mesh_summary(study: StudyData) -> dict[str, Any]:
@@ -57,15 +70,3 @@ def mesh_summary(study: StudyData) -> dict[str, Any]:
     made = {"mesher": choice.mesher, "size_m": choice.size, "cell": choice.cell, "through": choice.through}
     read = {"mesher": "file", "size_m": None, "file": choice.file}
     return (made if choice.file is None else read) | {"element": choice.element, "section": choice.section}
-
-
-def write_origin(
-    study: StudyData,
-    folder: Path,
-    *also: Any,
-    tolerance: float | None = None,
-    random_seed: int | None = None,
-) -> None:
-    """Write the study, and `origin` as ``summary.json``: for a command whose answer is another file."""
-    write_study_beside(study, folder)
-    write_json(origin(study, *also, tolerance=tolerance, random_seed=random_seed), folder / SUMMARY)

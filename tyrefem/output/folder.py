@@ -15,7 +15,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from fnmatch import fnmatchcase
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 from tyrefem.errors import InputError
 from tyrefem.interruption import interruption_delayed
@@ -26,6 +26,7 @@ from tyrefem.output import (
     command_arguments,
     guarded,
     inputs_read,
+    jsonable,
     place_of_output,
     remove_temporary,
     versions,
@@ -46,12 +47,26 @@ def checksum(path: Path) -> str:
         return hashlib.file_digest(stream, lambda: hashlib.blake2b(digest_size=8)).hexdigest()
 
 
+class Origin(Protocol):
+    """What makes the results of a folder."""
+
+    def names(self, folder: Path) -> Sequence[str]:
+        """The files that `write` writes into a folder."""
+
+    def write(self, folder: Path) -> Sequence[str]:
+        """Write these files; return their names."""
+
+    def summary(self) -> dict[str, Any]:
+        """Contents of ``summary.json`` if the command writes none."""
+
+
 @contextmanager
 def results_folder(
     folder: str | Path,
     command: str,
     names: Sequence[str],
     *,
+    origin: Origin | None,
     inputs: Iterable[str | Path] = (),
     force: bool = False,
     keeps: Sequence[str] = (),
@@ -63,6 +78,8 @@ def results_folder(
     folder : created if missing, and removed again if it stays empty.
     command : that writes, e.g. ``"run"``.
     names : files that it may write, relative to the folder, with ``*`` for parts that are not known yet.
+    origin : the study that makes the results: its file is written beside them, and ``summary.json`` if the command
+        writes none. None: the results come from no study.
     inputs : files that the command reads, besides those already read.
     force : replace foreign files of these names, and another command's results.
     keeps : names of files with finished work for a later attempt: the folder is marked at once, and they stay.
@@ -76,17 +93,23 @@ def results_folder(
     made = [path for path in (place, *place.parents) if not path.exists()]
     try:
         with _locked(place):
-            guard = ResultsFolder(place, command, (*names, *keeps), tuple(map(Path, inputs)), force=force, keeps=keeps)
+            files = tuple(map(Path, inputs))
+            guard = ResultsFolder(place, command, names, files, force=force, keeps=keeps, origin=origin)
             guard.check()
             try:
                 with guarded(guard):
                     guard.mark(keeps)
                     yield Path(folder)
                 with interruption_delayed():
+                    with guarded(guard):
+                        guard.write_origin()
                     guard.finish()
             except BaseException:
-                with interruption_delayed(), suppress(OSError, InputError):
-                    guard.restore()
+                with interruption_delayed():
+                    with suppress(OSError, InputError), guarded(guard):
+                        guard.write_origin()
+                    with suppress(OSError, InputError):
+                        guard.restore()
                 raise
     finally:
         with interruption_delayed():
@@ -135,10 +158,12 @@ class ResultsFolder(WriteGuard):
         *,
         force: bool,
         keeps: Sequence[str],
+        origin: Origin | None,
     ) -> None:
         self.folder = folder
         self.command = command
-        self.names = (SUMMARY, *names)
+        self.names = (SUMMARY, *names, *(origin.names(folder) if origin else ()), *keeps)
+        self._origin = origin
         self.force = force
         self._keeps = tuple(keeps)
         self._inputs = tuple(inputs)
@@ -219,6 +244,18 @@ class ResultsFolder(WriteGuard):
         return True
 
     # -- at the end --------------------------------------------------------------------------------------------------
+
+    def write_origin(self) -> None:
+        """Write what made the results, if there are any: files and summary that the command has not written itself."""
+        if self._origin is None or not self._has_results():
+            return
+        if not set(self._origin.names(self.folder)) <= set(self._written):
+            self._origin.write(self.folder)
+        self._summary = self._summary or jsonable(self._origin.summary())
+
+    def _has_results(self) -> bool:
+        """Whether a file was written that is no work kept for a later attempt."""
+        return bool(self._summary) or any(not _matches(name, self._keeps) for name in self._written)
 
     def finish(self) -> None:
         """Remove remaining files of the earlier run, and mark the folder as complete."""

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from tyrefem.errors import InputError
 from tyrefem.estimates import work as estimate
-from tyrefem.inputs.origin import origin
+from tyrefem.inputs.origin import StudyOrigin
 from tyrefem.inputs.study import StudyData
 from tyrefem.realtime.export import arrays_of, outputs_of, write
 from tyrefem.realtime.inputs import NAMES, Box, BoxDrive, box_of, random_drive, steady
@@ -313,7 +313,8 @@ class _Training:
     def about(self) -> dict[str, Any]:
         """Data about the model for the file: what made it, box, outputs, start values."""
         balance = reduced_balance(self.reduced, self.base)
-        return origin(self.study, tolerance=self.study.tolerance, random_seed=self.settings.seed) | {
+        made_by = StudyOrigin(self.study, simulated=True, random_seed=self.settings.seed)
+        return made_by.summary() | {
             "box": {name: list(self.box.ranges[name]) for name in NAMES},
             "outputs": outputs_of(self.study, balance),
             "initial": self.study.card.drive.initial,

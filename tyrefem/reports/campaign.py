@@ -8,7 +8,7 @@ from glob import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tyrefem.inputs.origin import origin, study_names, write_study_beside
+from tyrefem.inputs.origin import StudyOrigin
 from tyrefem.interruption import interruption_delayed
 from tyrefem.output import atomic_path, versions, write_json
 from tyrefem.reports.figures.style import FONT, TITLE, add_axes, figure, line_style, plain, png, short, tidy, title
@@ -35,7 +35,7 @@ def campaign_files(campaign: CampaignData, folder: Path) -> list[str]:
         for name in run_files(campaign.study, folder / "cases" / case.name)
     ]
     vtk = [f"cases/{escape(case.name)}/vtk/{name}" for case in campaign.cases for name in file_names(case.name)]
-    whole = ["campaign.csv", *study_names(campaign.study, folder), "report.html"]
+    whole = ["campaign.csv", "report.html"]
     return [*whole, *(name for name in cases if "/vtk/" not in name), *vtk,
             *(f"cases/{escape(case.name)}/summary.json" for case in campaign.cases)]  # fmt: skip
 
@@ -54,7 +54,7 @@ def run_campaign(
     ``each`` may write more files of a case (pictures, VTK) into its folder. ``parquet``: its tables as Parquet, too.
     """
     rows: list[dict[str, Any]] = []
-    write_study_beside(campaign.study, folder)
+    StudyOrigin(campaign.study).write(folder)
     # Written at the start: an older campaign's table in this folder must not be taken for this one's.
     table = _write_table(campaign, rows, folder)
     for case, outcome in campaign.runs(progress):
@@ -85,8 +85,8 @@ def _write_table(campaign: CampaignData, rows: list[dict[str, Any]], folder: Pat
 
 
 def _summary(campaign: CampaignData, table: pd.DataFrame, complete: bool) -> dict[str, Any]:
-    study = campaign.study
-    return origin(study, [dict(case.changes) for case in campaign.cases], tolerance=study.tolerance) | {
+    made_by = StudyOrigin(campaign.study, simulated=True).using([dict(case.changes) for case in campaign.cases])
+    return made_by.summary() | {
         "complete": complete,
         "cases": table.to_dict("records"),
         "failed": [entry["case"] for entry in table.to_dict("records") if entry.get("failure")],

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.fatigue.places import FailurePlace, first_places
-from tyrefem.inputs.origin import mesh_summary, origin
+from tyrefem.inputs.origin import StudyOrigin, mesh_summary
 from tyrefem.interruption import keeping
 from tyrefem.output import atomic_folder, write_json
 from tyrefem.reports.figures.style import png
@@ -62,7 +62,7 @@ def summary(life: LifeData, shifts: Sequence[LifeShift] = ()) -> dict[str, Any]:
     phases = [phase.name for phase in life.study.card.drive.phases]
     first = life.first, int(life.typical[life.first])
     mesh = {"elements": len(life.km), "nodes_of_nine_node_elements": life.rings.n_nodes}
-    return origin(life.study, tolerance=life.study.tolerance) | {
+    return StudyOrigin(life.study, simulated=life.temperature is None).summary() | {
         "about": ABOUT,
         "sum": MINER,
         "shortest_km": life.shortest,

@@ -6,7 +6,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tyrefem.inputs.origin import study_names, write_study_beside
+from tyrefem.inputs.origin import StudyOrigin
 from tyrefem.inputs.published import PublishedComparison, compared, of_footprint
 from tyrefem.inputs.study_plugins import plugin_summary
 from tyrefem.output import versions, write_json
@@ -143,7 +143,7 @@ def run_files(study: StudyData, folder: Path) -> list[str]:
     from tyrefem.simulation.stored_result import FILE
 
     columns = [name.replace(".csv", ".parquet") for name in TABLES]
-    whole = [*TABLES, *columns, FILE, *study_names(study, folder), "report.html"]
+    whole = [*TABLES, *columns, FILE, *StudyOrigin(study).names(folder), "report.html"]
     return [*whole, *(f"pictures/{name}" for name in PICTURES),
             *(f"vtk/{name}" for name in file_names(study.name))]  # fmt: skip
 
@@ -181,5 +181,5 @@ def write_tables(result: ResultData, folder: Path, *, parquet: bool = False) -> 
                 whole = result.readings.assign(**{"contained-air_pressure_Pa": result.gas_pressure})
             write_parquet(whole, (folder / name).with_suffix(".parquet"))
     write_result(result, folder / FILE)
-    write_study_beside(result.study, folder)
+    StudyOrigin(result.study).write(folder)
     return write_json(summary(result), folder / "summary.json")

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tyrefem.brief import counted
-from tyrefem.inputs.origin import origin, study_names, write_study_beside
+from tyrefem.inputs.origin import StudyOrigin
 from tyrefem.output import atomic_path, write_json
 from tyrefem.reports.parquet import with_units, write_parquet
 from tyrefem.reports.sweep import FILES as LIST
@@ -23,7 +23,6 @@ from tyrefem.variants.store import NAME as VARIANTS
 if TYPE_CHECKING:
     import pandas as pd
 
-    from tyrefem.inputs.study import StudyData
     from tyrefem.sweep.design import DesignData
 
 PAGE = "sweep.html"
@@ -34,14 +33,13 @@ def part_names() -> tuple[str, ...]:
     return ("sweep", "pareto", "indices", "optimum", *sweep_questions())
 
 
-def file_names(study: StudyData, folder: Path) -> tuple[str, ...]:
-    """The files that `save` may write into a folder."""
+def file_names() -> tuple[str, ...]:
+    """The files that `save` may write into a folder, besides the study's."""
     pictures = ("map-*.png", "curves-*.png", "bars-*.png", "pareto*.png", "indices-*.png", "optimum.png",
                 *(f"{key}*.png" for key in sweep_questions()))  # fmt: skip
     return (
         *(f"{name}.{kind}" for name in part_names() for kind in ("csv", "parquet")),
         "errors.csv",
-        *study_names(study, folder),
         PAGE,
         *(f"pictures/{name}" for name in pictures),
         *(f"{VARIANT_FILES}/*/*.{kind}" for kind in ("pvd", "vtu", "py")),
@@ -67,7 +65,7 @@ def save(design: DesignData, folder: Path, *, pictures: bool = True) -> dict[str
             written += write_table(part.table, folder, part.name)
     if design.swept is not None and design.swept.certificate is not None:
         written += write_errors(design.swept, folder)
-    written += write_study_beside(design.study, folder)
+    written += StudyOrigin(design.study).write(folder)
     summary = summarised(design)
     if pictures:
         written += write_page(design, summary, folder)
@@ -128,13 +126,8 @@ def write_errors(sweep: Sweep, folder: Path) -> list[str]:
 def summarised(design: DesignData) -> dict[str, Any]:
     """Contents of `summary.json`: sample, computation of the variants, every answer, versions, sentences."""
     study, card = design.study, design.card
-    made_of = origin(
-        study,
-        _variants(design),
-        [part.name for part in design.parts],
-        tolerance=study.tolerance,
-        random_seed=card.seed,
-    )
+    origin = StudyOrigin(study, simulated=True, random_seed=card.seed)
+    made_of = origin.using(_variants(design), [part.name for part in design.parts]).summary()
     return made_of | {
         "title": card.title or study.title,
         "complete": not design.interrupted and (design.swept is None or design.swept.complete),

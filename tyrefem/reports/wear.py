@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tyrefem.inputs.origin import origin
+from tyrefem.inputs.origin import StudyOrigin
 from tyrefem.output import atomic_folder, write_json
 from tyrefem.quantity import written
 from tyrefem.reports.figures.style import FONT, add_axes, figure, line_style, png, tidy, title
@@ -73,7 +73,7 @@ def rings_table(wear: RingWear) -> Any:
 def summary(study: StudyData, rolled: RolledStudy | None, wear: RingWear) -> dict[str, Any]:
     """Contents of ``summary.json``."""
     density = study.materials["tread"].density.at(study.card.drive.initial)
-    return origin(study) | {
+    return StudyOrigin(study).summary() | {
         "about": ABOUT,
         **(_drive(wear) if rolled is None else _state(rolled)),
         "mean_wear_mm_per_1000_km": wear.mean / MILLIMETRES,
