@@ -130,3 +130,15 @@ def test_energies_of_places_that_their_region_does_not_have(here: Path, capfd: p
     assert main(["check", file]) == 0
     (line,) = lines(capfd)
     assert "mechanics.energy.regions.apex: rows at 20, 60 mm have no effect: it runs from 155." in line
+
+
+def test_a_sweep_warns_of_a_factor_as_a_single_run_does(capfd: pytest.CaptureFixture[str], here: Path) -> None:
+    """The study itself has no factor; both ends of the range have one that acts on half of the plies' area."""
+    (here / "sweep.toml").write_text(
+        f'study = "{RADIAL}"\n[vary]\n"section.thickness_scale.body-ply" = {{ from = 0.8, to = 1.2 }}\n',
+        encoding="utf-8",
+    )
+    for words in (["check", "sweep.toml"], ["show", "sweep", "sweep.toml"]):
+        assert main(words) == 0
+        (line,) = lines(capfd)
+        assert "section.parameters.thickness_scale.body-ply: 0.8 changes the area of 'body-ply' by -10 %" in line

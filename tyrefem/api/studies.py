@@ -12,7 +12,7 @@ from tyrefem.api.study_mechanics import StudyMechanics
 from tyrefem.api.study_questions import StudyQuestions
 from tyrefem.api.verbs import shown, with_verbs
 from tyrefem.errors import InputWarning
-from tyrefem.mechanics.cautions import cautions
+from tyrefem.mechanics.cautions import warnings_of
 from tyrefem.mechanics.strain_laws import strain_law
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ class Study(StudyQuestions, StudyMechanics):
     @functools.cached_property
     def warnings(self) -> tuple[InputWarning, ...]:
         """Warnings of unusual input in the study, its section, its material cards and its effects."""
-        return tuple(dict.fromkeys((*super().warnings, *cautions(self))))
+        return warnings_of(self)
 
     def _repr_html_(self) -> str | None:
         from tyrefem.reports.notebook import study_page

@@ -124,11 +124,10 @@ def _card(path: Path) -> str:
         films, runs = counted(len(thermal.films), "film"), counted(len(thermal.runs), "run")
         return f"a thermal card of {bodies}, {films}, {runs}"
     if kind == "sweep":
-        from tyrefem.mechanics.cautions import warnings_of
         from tyrefem.sweep.design import loaded
 
         sweep = loaded(str(path.resolve()))
-        warn(warnings_of(sweep.study))
+        warn(sweep.warnings)
         return f"a sweep: {sweep.words}"
     if kind == "section":
         from tyrefem.geometry import load

@@ -86,6 +86,7 @@ def explore(
         )
         tick("page", 0, 1)
         write_page(model, path)
+    warn(model.plan.warnings)
     keyed = [number.key for number in model.plan.varied]
     answer_with(
         {

@@ -248,13 +248,12 @@ def _print(kind: str, name: str, values: dict[str, Any], case: str | None) -> di
         warn(shown_study.warnings)
         data, path = dict(shown_study.data), shown_study.file
     elif kind == "sweep":
-        from tyrefem.mechanics.cautions import warnings_of
         from tyrefem.sweep.design import loaded
 
         path = library.find("sweep", name)
         of_a_case = {} if case is None else {"case": case}
         sweep = loaded(str(path), values, **of_a_case)
-        warn(warnings_of(sweep.study))
+        warn(sweep.warnings)
         say(f"# {sweep.words}")
         data = read_toml(path) | of_a_case
         if values:

@@ -182,7 +182,6 @@ def sweep(
     """
     from tyrefem.cli.sweep_flags import computed_design, questions, questions_of_flags
     from tyrefem.inputs.origin import StudyOrigin
-    from tyrefem.mechanics.cautions import warnings_of
     from tyrefem.quantity import parse
     from tyrefem.reports.sweep_files import file_names, kept_names, save
     from tyrefem.reports.sweep_variants import chosen_variants, refuse_unknown, write_variants
@@ -200,7 +199,7 @@ def sweep(
         raise error if error.field else error.within(field="--tolerance") from None
     name, wanted = questions(study, given, settings(changes), case)
     refuse_unknown(wanted.plan, vtk or ())
-    warn(warnings_of(wanted.study))
+    warn(wanted.warnings)
     origin = StudyOrigin(wanted.study, simulated=True, random_seed=wanted.card.seed)
     place = out or Path("results") / f"{name}-sweep"
     with (

@@ -139,8 +139,8 @@ class StudyContents(Brief):
         return sensor_place(sensor, self.new_section)
 
     @functools.cached_property
-    def warnings(self) -> tuple[InputWarning, ...]:
-        """Warnings of unusual input in the study, its section and its material cards."""
+    def input_warnings(self) -> tuple[InputWarning, ...]:
+        """Warnings of unusual input, without the strain law's: `tyrefem.mechanics.cautions.warnings_of` gives all."""
         cautions = ((effect, effect.caution(self)) for effect in self.effects)
         return (
             *study_warnings(self.card, self.new_section, self.materials, self.file),

@@ -22,7 +22,7 @@ def study_warnings(
 
     >>> from tyrefem.inputs.study import study
     >>> light = study("nasa-22x5.5-8pr", {"materials.tread.density.value": "1.18 kg/m**3"})
-    >>> [warning.field for warning in light.warnings]
+    >>> [warning.field for warning in light.input_warnings]
     ['materials.tread.density.value']
     """
     warnings = [*card.warnings(), *_of_another_tyre(card, section), *_of_driven_temperatures(card)]

@@ -8,8 +8,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
 from tyrefem.brief import Brief
-from tyrefem.errors import InputError, nearest
+from tyrefem.errors import InputError, InputWarning, nearest
 from tyrefem.inputs.study import StudyData
+from tyrefem.mechanics.cautions import warnings_of
 from tyrefem.requirements import Requirements
 from tyrefem.sweep.envelope import Envelope
 from tyrefem.sweep.optimum import Optimum, optimum
@@ -151,6 +152,11 @@ class Questions:
     card: SweepCard
     plan: Plan
     further: tuple[SweepQuestion, ...] = ()
+
+    @property
+    def warnings(self) -> tuple[InputWarning, ...]:
+        """Warnings of unusual input in the study, and in its variants at the ends of what varies."""
+        return (*warnings_of(self.study), *self.plan.warnings)
 
     @property
     def words(self) -> str:

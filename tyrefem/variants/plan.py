@@ -10,9 +10,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from tyrefem.errors import InputError
+from tyrefem.errors import InputError, InputWarning
 from tyrefem.inputs.study import StudyData
 from tyrefem.inputs.uncertain_numbers import left_out
+from tyrefem.mechanics.cautions import warnings_of
 from tyrefem.mechanics.cycle_schedule import check_cases
 from tyrefem.quantity import written
 from tyrefem.variants.answers import check_answer, check_sensor_names
@@ -60,6 +61,21 @@ class Plan:
             digest.update(json.dumps(changes, sort_keys=True, default=str).encode())
         digest.update(f"], {time_to}]".encode())
         return digest.hexdigest()[:16]
+
+    @functools.cached_property
+    def warnings(self) -> tuple[InputWarning, ...]:
+        """Warnings of listed values and of both ends of every range that the study itself does not give.
+
+        Each number varies alone; of its warnings of a field the first is kept.
+        """
+        known = {warning.field for warning in warnings_of(self.study)}
+        first: dict[str | None, InputWarning] = {}
+        for number in self.varied:
+            for value in number.ends:
+                for warning in warnings_of(self.study.replace(number.changes(value))):
+                    if warning.field not in known:
+                        first.setdefault(warning.field, warning)
+        return tuple(first.values())
 
     @property
     def keys(self) -> list[str]:
