@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+import tyrefem
 from tyrefem.cli import main
 from tyrefem.schemas.files import study_schema
 from tyrefem.schemas.line import SETTINGS
@@ -53,6 +54,9 @@ def test_it_writes_schemas_and_settings(here: Path, capsys: pytest.CaptureFixtur
     assert 'path = "schemas/study.json"' in (here / SETTINGS).read_text(encoding="utf-8")
     assert "Even Better TOML" in capsys.readouterr().out
     assert main(["schema"]) == 0  # its own files may be written again
+    # Nothing of the machine: a project keeps the folder.
+    summary = json.loads((here / "schemas/summary.json").read_text(encoding="utf-8"))
+    assert summary["versions"] == {"tyrefem": tyrefem.__version__}
 
 
 def test_settings_of_the_user_are_kept(here: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -21,6 +21,7 @@ def schema(
 
     Your own effects and cards are in them. Taplo and VS Code read .taplo.toml, written in this folder.
     """
+    from tyrefem import __version__
     from tyrefem.output import atomic_path, write_json
     from tyrefem.output.file import made_by_this_tool
     from tyrefem.output.folder import results_folder
@@ -33,7 +34,8 @@ def schema(
         for name, text in made.items():
             with atomic_path(folder / name) as temporary:
                 temporary.write_text(text, encoding="utf-8")
-        write_json({"schemas": [*made]}, folder / "summary.json")
+        # Numerical libraries have no part in schemas: a folder kept with a project is the same on every machine.
+        write_json({"versions": {"tyrefem": __version__}, "schemas": [*made]}, folder / "summary.json")
     names = ", ".join(name.removesuffix(".json") for name in made)
     say(f"{len(made)} schemas in {out}: {names}")
     place, rules = Path(SETTINGS), settings(os.path.relpath(out))
