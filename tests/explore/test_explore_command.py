@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tyrefem.api import Study
+from tyrefem.api import Study, study
 from tyrefem.cli import main
 
 RANGES = ("--vary", "drive.speed=15 mph:20 mph", "--limit", "hottest_degC<60", "--tolerance", "1 K", "--workers", "1")
@@ -25,7 +25,8 @@ def test_the_command_writes_a_page(small: Study, tmp_path: Path, capsys: pytest.
     assert capsys.readouterr().out.startswith("1 number, ")
     text = page.read_text(encoding="utf-8")
     assert '"limits":[{"answer":"hottest_degC","below":60.0' in text
-    assert [file.name for file in page.parent.iterdir()] == ["tyre.html"]
+    assert {file.name for file in page.parent.iterdir()} == {"tyre.html", "tyre.toml"}
+    assert study(str(page.with_suffix(".toml"))).data["drive"] == small.data["drive"]
 
 
 @pytest.mark.parametrize(
@@ -54,6 +55,11 @@ def test_bad_input_ends_with_a_line(
 
 
 def test_a_foreign_file_stays(small: Study, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    table = tmp_path / "tyre.toml"
+    table.write_text("mine = 1")
+    assert main(["explore", str(small.file), *RANGES, "--out", str(tmp_path / "tyre.html")]) == 2
+    assert "tyre.toml: --out: exists and was not made by tyrefem" in capsys.readouterr().err
+    assert table.read_text() == "mine = 1"
     mine = tmp_path / "mine.html"
     mine.write_text("<p>mine</p>")
     assert main(["explore", str(small.file), *RANGES, "--out", str(mine)]) == 2

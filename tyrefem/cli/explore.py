@@ -58,6 +58,7 @@ def explore(
     """
     from tyrefem.api import study as loaded
     from tyrefem.cli.sweep_flags import questions_of_flags
+    from tyrefem.inputs.origin import StudyOrigin
     from tyrefem.inputs.study_plugins import plugin_summary
     from tyrefem.realtime.box_model import NEEDS
     from tyrefem.reports.explore import described, write_page
@@ -71,8 +72,9 @@ def explore(
     allowed = None if tolerance is None else read_quantity("--tolerance", tolerance, "delta_degC", gt=0)
     keys = None if axes is None else _pair(axes)
     count = workers or os.cpu_count() or 1
+    origin = StudyOrigin.beside(chosen, path)
     with (
-        results_file(path, (".html",), force=force),
+        results_file(path, (".html",), origin=origin, force=force),
         Local(count) if count > 1 else nullcontext(Here()) as scheduler,
         stages() as tick,
     ):

@@ -83,6 +83,7 @@ def export(
     and need only numpy.
     """
     from tyrefem.api import study as loaded
+    from tyrefem.inputs.origin import StudyOrigin
     from tyrefem.realtime.certificate import NEEDS
     from tyrefem.realtime.certificate import export as write
     from tyrefem.variants.schedulers import Here, Local
@@ -103,7 +104,8 @@ def export(
         raise InputError(f"must be a second or more, not {duration}", field="--duration")
     count = workers or os.cpu_count() or 1
     files = {"file": path} | ({"fmu": path.with_suffix(".fmu")} if fmu else {})
-    with results_file(path, (".npz",), also=files.values(), force=force):
+    origin = StudyOrigin.beside(chosen, path)
+    with results_file(path, (".npz",), also=files.values(), origin=origin, force=force):
         try:
             with stages() as tick:
                 certificate = write(

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from tyrefem.inputs.study_file import write_study
 from tyrefem.inputs.study_plugins import plugin_summary
 from tyrefem.output import versions
 
@@ -14,23 +15,32 @@ if TYPE_CHECKING:
 
 #: The study of a folder of results, with all changes: `tyrefem.load` of the folder reads it.
 STUDY = "study.toml"
+#: First line of a study that a command writes; with it the command may write the file again.
+WRITTEN = "# Written by tyrefem: the study that made the results beside this file."
 
 
 @dataclass(frozen=True)
 class StudyOrigin:
-    """The study that makes a folder of results: an `Origin` of `results_folder`.
+    """The study that makes results: an `Origin` of `results_folder` and `results_file`.
 
     Parameters
     ----------
     simulated : whether temperatures are simulated, with the study's tolerance of the time steps.
     random_seed : None: nothing is random.
     used : plain data that may name more plugins than the study.
+    file : name of the study's file beside the results.
     """
 
     study: StudyData
     simulated: bool = False
     random_seed: int | None = None
     used: tuple[Any, ...] = ()
+    file: str = STUDY
+
+    @classmethod
+    def beside(cls, study: StudyData, result: Path) -> StudyOrigin:
+        """The study of a single result file, in a file of the same name: ``tyre.toml`` of ``tyre.npz``."""
+        return cls(study, file=f"{result.stem}.toml")
 
     def using(self, *data: Any) -> StudyOrigin:
         """The same with the plugins that ``data`` name."""
@@ -38,14 +48,14 @@ class StudyOrigin:
 
     def names(self, folder: Path) -> tuple[str, ...]:
         """Name of the study's file in a folder of results; empty where the study's own file stands in its place."""
-        target, file = folder / STUDY, self.study.file
-        return () if file is not None and target.resolve() == file.resolve() else (STUDY,)
+        target, read = folder / self.file, self.study.file
+        return () if read is not None and target.resolve() == read.resolve() else (self.file,)
 
     def write(self, folder: Path) -> tuple[str, ...]:
         """Write the study into a folder, unless its own file stands there; return the names."""
         names = self.names(folder)
         for name in names:
-            self.study.save(folder / name)
+            write_study(self.study.data, self.study.folder, folder / name, comment=WRITTEN)
         return names
 
     def summary(self) -> dict[str, Any]:

@@ -11,8 +11,8 @@ from tyrefem import library
 from tyrefem.quantity import written
 
 
-def write_study(data: Mapping[str, Any], folder: Path | None, path: Path) -> Path:
-    """Write a study's data as TOML; return the path.
+def write_study(data: Mapping[str, Any], folder: Path | None, path: Path, *, comment: str = "") -> Path:
+    """Write a study's data as TOML, after a line with a ``comment``; return the path.
 
     Paths relative to ``folder`` become absolute if ``path`` is in another folder.
     """
@@ -22,7 +22,7 @@ def write_study(data: Mapping[str, Any], folder: Path | None, path: Path) -> Pat
 
     content = dict(data) if path.parent.resolve() == folder else _portable(data, folder)
     with atomic_path(path) as temporary:
-        temporary.write_text(tomli_w.dumps(written(content)), encoding="utf-8")
+        temporary.write_text(f"{comment}\n" * bool(comment) + tomli_w.dumps(written(content)), encoding="utf-8")
     return path
 
 

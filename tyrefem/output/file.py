@@ -10,6 +10,7 @@ from pathlib import Path
 
 from tyrefem.errors import InputError
 from tyrefem.output import WriteGuard, guarded, inputs_read, place_of_output
+from tyrefem.output.origin import Origin
 
 #: Picture formats, by the file's suffix.
 PICTURES = (".png", ".pdf", ".svg")
@@ -21,13 +22,19 @@ SEARCHED = 1 << 16
 
 @contextmanager
 def results_file(
-    path: str | Path, suffixes: Sequence[str], *, also: Iterable[str | Path] = (), force: bool = False
+    path: str | Path,
+    suffixes: Sequence[str],
+    *,
+    also: Iterable[str | Path] = (),
+    origin: Origin | None = None,
+    force: bool = False,
 ) -> Iterator[Path]:
     """The file that a command writes, checked before any computing.
 
     Parameters
     ----------
     suffixes : allowed ones, e.g. ``(".png", ".pdf")``. also : further files that the command writes.
+    origin : the study that makes the file: it is written beside the finished file.
     force : replace a file that was not made by this tool.
 
     Raises
@@ -41,10 +48,13 @@ def results_file(
     if path.suffix.lower() not in suffixes:
         raise InputError(f"'{path}' must end with {' or '.join(suffixes)}", field="--out")
     guard = _FileGuard()
-    for file in (path, *map(Path, also)):
+    beside = () if origin is None else origin.names(path.parent)
+    for file in (path, *map(Path, also), *(path.parent / name for name in beside)):
         guard.check(Path(os.path.abspath(file)), force=force)
     with guarded(guard):
         yield path
+        if origin is not None:
+            origin.write(path.parent)
 
 
 class _FileGuard(WriteGuard):

@@ -15,7 +15,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from fnmatch import fnmatchcase
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 from tyrefem.errors import InputError
 from tyrefem.interruption import interruption_delayed
@@ -32,6 +32,7 @@ from tyrefem.output import (
     versions,
     write_json,
 )
+from tyrefem.output.origin import Origin
 
 #: Keys of ``summary.json`` that belong to the folder, not to the result.
 COMMAND, COMPLETE, FILES, CHECKSUMS, WRITING = "command", "complete", "files", "checksums", "writing"
@@ -45,19 +46,6 @@ def checksum(path: Path) -> str:
     """Checksum of a file's content: 64 bits of BLAKE2."""
     with path.open("rb") as stream:
         return hashlib.file_digest(stream, lambda: hashlib.blake2b(digest_size=8)).hexdigest()
-
-
-class Origin(Protocol):
-    """What makes the results of a folder."""
-
-    def names(self, folder: Path) -> Sequence[str]:
-        """The files that `write` writes into a folder."""
-
-    def write(self, folder: Path) -> Sequence[str]:
-        """Write these files; return their names."""
-
-    def summary(self) -> dict[str, Any]:
-        """Contents of ``summary.json`` if the command writes none."""
 
 
 @contextmanager
