@@ -28,8 +28,8 @@ import statistics
 import time
 
 import tyrefem
+from tyrefem.reduced.packed_model import ReducedTask, pack, perform_reduced
 from tyrefem.reduced.surrogate import surrogate, temperature_error
-from tyrefem.reduced.training_rounds import ReducedTask, pack, perform_reduced
 from tyrefem.variants.execution import SweepSettings
 from tyrefem.variants.plan import plan_of
 from tyrefem.variants.task import perform

@@ -15,9 +15,9 @@ from tyrefem.api import Study
 from tyrefem.reduced.answers import reduced_answers, reduced_outcomes
 from tyrefem.reduced.balance import reduced_balance
 from tyrefem.reduced.model import NotReducibleError
+from tyrefem.reduced.packed_model import ReducedTask, pack, perform_reduced
 from tyrefem.reduced.readout import Readout
 from tyrefem.reduced.surrogate import Surrogate, surrogate, temperature_error
-from tyrefem.reduced.training_rounds import ReducedTask, pack, perform_reduced
 from tyrefem.reduced.variant import Variant
 from tyrefem.simulation.rolling_tyre import RollingTyre
 from tyrefem.simulation.run import run

@@ -9,9 +9,10 @@ from tyrefem import study
 from tyrefem.api import Study
 from tyrefem.errors import InputError
 from tyrefem.reduced.learnt_cycles import Press, learnt, mechanical_numbers, press_count, press_of
+from tyrefem.reduced.packed_model import ReducedTask, pack, perform_reduced
 from tyrefem.reduced.surrogate import Surrogate, surrogate, temperature_error
 from tyrefem.reduced.training import ReducedFineness
-from tyrefem.reduced.training_rounds import ReducedTask, Training, pack, perform_reduced
+from tyrefem.reduced.training_rounds import Training
 from tyrefem.simulation.rolling_tyre import RollingTyre
 from tyrefem.variants.outcomes import Answered
 from tyrefem.variants.plan import Plan, plan_of

@@ -16,9 +16,9 @@ from tyrefem.reduced.error_estimate import PARTS, SAFETY_FACTOR, TAU, estimated_
 from tyrefem.reduced.learnt_balance import learnt_inputs
 from tyrefem.reduced.learnt_inputs import LearntInputs
 from tyrefem.reduced.model import ReducedModel
+from tyrefem.reduced.packed_model import ReducedTask, pack, perform_reduced
 from tyrefem.reduced.separated import NotSeparableError, separated
 from tyrefem.reduced.surrogate import surrogate
-from tyrefem.reduced.training_rounds import ReducedTask, pack, perform_reduced
 from tyrefem.reduced.variant import Variant
 from tyrefem.simulation.rolling_tyre import RollingTyre
 from tyrefem.variants.outcomes import Answered

@@ -10,10 +10,10 @@ from tyrefem.api import Study
 from tyrefem.conduction.points import located
 from tyrefem.geometry.meshing.topology import OtherTopologyError, Topology, common_counts
 from tyrefem.reduced.model import NotReducibleError, ReducedModel
+from tyrefem.reduced.packed_model import ReducedTask, pack, perform_reduced
 from tyrefem.reduced.shaped_model import ShapedModel, fill, on_tyre, within
 from tyrefem.reduced.shapes import counts_of, tyre_of, with_shapes
 from tyrefem.reduced.surrogate import Surrogate, surrogate, temperature_error
-from tyrefem.reduced.training_rounds import ReducedTask, pack, perform_reduced
 from tyrefem.simulation.rolling_tyre import RollingTyre
 from tyrefem.variants.execution import SweepSettings
 from tyrefem.variants.outcomes import Answered

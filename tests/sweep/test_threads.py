@@ -12,7 +12,7 @@ import pandas as pd
 import pytest
 
 from tyrefem import study
-from tyrefem.reduced import training_rounds
+from tyrefem.reduced import packed_model
 from tyrefem.sweep.sweep import Sweep, sweep
 from tyrefem.variants.execution import SweepSettings
 from tyrefem.variants.plan import Plan, plan_of
@@ -74,14 +74,14 @@ class Named:
 
 
 def test_every_thread_gets_the_tyre_of_its_own_study(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(training_rounds, "unpacked", lambda packed: packed)
-    monkeypatch.setattr(training_rounds, "tyre_of", lambda packed, counts: f"tyre of {packed.name}")
+    monkeypatch.setattr(packed_model, "unpacked", lambda packed: packed)
+    monkeypatch.setattr(packed_model, "tyre_of", lambda packed, counts: f"tyre of {packed.name}")
     begin = threading.Barrier(8)
 
     def wrong(number: int) -> int:
         begin.wait()
         names = [f"study {(number + n) % 8}" for n in range(500)]
-        return sum(training_rounds.base_of(Named(name)) != f"tyre of {name}" for name in names)  # type: ignore[arg-type]
+        return sum(packed_model.base_of(Named(name)) != f"tyre of {name}" for name in names)  # type: ignore[arg-type]
 
     with ThreadPoolExecutor(8) as pool:
         assert sum(pool.map(wrong, range(8))) == 0

@@ -19,9 +19,10 @@ from tyrefem.mechanics.cycle_schedule import same_cycles
 from tyrefem.mechanics.strain_laws import strain_law
 from tyrefem.reduced.answers import outcomes_of
 from tyrefem.reduced.model import NotReducibleError, ReducedModel
+from tyrefem.reduced.packed_model import PackedModel, pack, remember
 from tyrefem.reduced.residual import EARLY, corrected_tyre
 from tyrefem.reduced.training import ReducedFineness, Snapshots, sources_at, trained
-from tyrefem.reduced.training_rounds import HORIZONS, PackedModel, pack, remember
+from tyrefem.reduced.training_rounds import HORIZONS
 from tyrefem.reduced.variant import Variant
 
 

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from tyrefem.errors import InputError
 from tyrefem.realtime.tyre import STANDSTILL
+from tyrefem.reduced.packed_model import base_of
 from tyrefem.reduced.training import Snapshots, snapshots, sources_at
-from tyrefem.reduced.training_rounds import base_of
 from tyrefem.simulation.result import ResultData
 from tyrefem.simulation.rolling_resistance import just_before
 from tyrefem.simulation.rolling_tyre import RollingTyre

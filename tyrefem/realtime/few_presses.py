@@ -19,7 +19,7 @@ from tyrefem.inputs.study import StudyData
 from tyrefem.mechanics.cycle_schedule import KnotSolver, changes_cycle, ramp_knots, same_cycles
 from tyrefem.realtime.inputs import Box
 from tyrefem.realtime.tables import Probe
-from tyrefem.reduced.training_rounds import base_of
+from tyrefem.reduced.packed_model import base_of
 from tyrefem.variants.outcomes import Failed
 from tyrefem.variants.plan import Plan
 from tyrefem.variants.schedulers import Scheduler

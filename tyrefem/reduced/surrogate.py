@@ -15,9 +15,11 @@ from tyrefem.inputs.study import StudyData
 from tyrefem.reduced.answers import ReducedOutcome, reduced_answers
 from tyrefem.reduced.learnt_balance import learnt_inputs
 from tyrefem.reduced.model import NotReducibleError, ReducedModel
+from tyrefem.reduced.packed_model import PackedModel, pack
 from tyrefem.reduced.shapes import shape_numbers
 from tyrefem.reduced.training import ReducedFineness
-from tyrefem.reduced.training_rounds import FullRun, PackedModel, ProgressCallback, Training, check_reducible, pack
+from tyrefem.reduced.training_rounds import ProgressCallback, Training, check_reducible
+from tyrefem.reduced.training_tasks import FullRun
 from tyrefem.variants.execution import SweepSettings
 from tyrefem.variants.outcomes import Answered, NotReducible
 from tyrefem.variants.plan import Plan

@@ -1,142 +1,39 @@
-"""Training of a reduced model by full runs and residual corrections, in parallel.
-
-Worker tasks that use a reduced model receive it as arrays.
-"""
+"""Training of a reduced model by full runs and residual corrections, in parallel."""
 
 from __future__ import annotations
 
-import functools
-import hashlib
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.cache import Cache
 from tyrefem.errors import InputError
-from tyrefem.geometry.meshing.mapped import Counts
-from tyrefem.reduced.answers import ReducedOutcome, batch_solutions, learnt_outcomes, reduced_answers
-from tyrefem.reduced.error_estimate import estimated_errors
-from tyrefem.reduced.learnt_cycles import LearntCycles, Press, learnt, mechanical_numbers, press_count, press_of
-from tyrefem.reduced.learnt_inputs import LearntInputs
+from tyrefem.reduced.learnt_cycles import LearntCycles, Press, learnt, mechanical_numbers, press_count
 from tyrefem.reduced.model import NotReducibleError, ReducedModel
-from tyrefem.reduced.residual import TIME_TOLERANCE as CORRECTION_TOLERANCE
-from tyrefem.reduced.residual import correction
-from tyrefem.reduced.shape_operators import ShapeOperators
+from tyrefem.reduced.packed_model import PackedModel, pack, remember
 from tyrefem.reduced.shapes import counts_of, shape_count, tyre_of, with_shapes
-from tyrefem.reduced.training import ReducedFineness, Snapshots, snapshots, trained, training_run
-from tyrefem.simulation.rolling_tyre import RollingTyre
-from tyrefem.simulation.run import run
-from tyrefem.variants.answers import answers
+from tyrefem.reduced.training import ReducedFineness, Snapshots, trained
+from tyrefem.reduced.training_tasks import (
+    CandidateTask,
+    Correction,
+    CorrectionTask,
+    FullRun,
+    FullRunTask,
+    PressTask,
+    perform_corrections,
+    perform_estimates,
+    perform_full_run,
+    perform_press,
+)
 from tyrefem.variants.outcomes import Failed, NotReducible
 from tyrefem.variants.plan import Plan
 from tyrefem.variants.samples import changes_at
 from tyrefem.variants.schedulers import Result, Scheduler
-from tyrefem.variants.task import Bundle, Task, unpacked
+from tyrefem.variants.task import Task
 
 Array = NDArray[np.float64]
-
-
-@dataclass(frozen=True, eq=False)
-class PackedModel:
-    """A reduced model without its operators; the receiving process assembles them once on the same mesh.
-
-    Parameters
-    ----------
-    base : the study that it was made for. V, samples, nodes_from_samples, hot, shapes, further, cycles : as in
-        `ReducedModel`.
-    inputs : as in `ReducedModel`.
-    counts : rows and gaps of the mesh that all shapes of the section share; None: the section does not vary.
-    """
-
-    base: Bundle
-    V: Array
-    samples: Mapping[str, Array]
-    nodes_from_samples: Array
-    hot: Mapping[str, NDArray[np.intp]]
-    counts: Counts | None = None
-    shapes: ShapeOperators | None = None
-    further: Array | None = None
-    cycles: LearntCycles | None = None
-    inputs: LearntInputs | None = None
-
-    @functools.cached_property
-    def digest(self) -> str:
-        """Digest of the study and the modes."""
-        without = [part is None for part in (self.shapes, self.further, self.cycles)]
-        text = f"{self.base.digest} {self.counts} {without} {self.inputs and self.inputs.digest}"
-        return hashlib.sha256(text.encode() + self.V.tobytes()).hexdigest()[:16]
-
-    def unpacked(self) -> ReducedModel:
-        """The reduced model, unpacked once per process."""
-        return _models.get(
-            self.digest,
-            lambda: ReducedModel(
-                base_of(self.base, self.counts),
-                self.V,
-                self.samples,
-                self.nodes_from_samples,
-                self.hot,
-                self.shapes,
-                self.further,
-                self.cycles,
-                self.inputs,
-            ),
-        )
-
-
-def base_of(packed: Bundle, counts: Counts | None = None) -> RollingTyre:
-    """The tyre of a study, built once per process; all variants use its mesh, or its topology (``counts``)."""
-    return _bases.get((packed.digest, counts), lambda: tyre_of(unpacked(packed), counts))
-
-
-def remember(packed: Bundle, base: RollingTyre) -> None:
-    """Make `base_of` return this tyre in this process, unless it has a tyre of the same study."""
-    _bases.get((packed.digest, _counts(base)), lambda: base)
-
-
-def _counts(base: RollingTyre) -> Counts | None:
-    return None if base.topology is None else base.topology.counts
-
-
-def pack(model: ReducedModel, base: Bundle) -> PackedModel:
-    """A model packed for other processes; ``base``: the study that it was made for."""
-    arrays = (model.V, model.samples, model.nodes_from_samples, model.hot)
-    return PackedModel(base, *arrays, _counts(model.base), model.shapes, model.further, model.cycles, model.inputs)
-
-
-#: Models and tyres that a process keeps: two sweeps may run on threads of one worker.
-KEPT = 2
-_models: Cache[ReducedModel] = Cache(KEPT)
-_bases: Cache[RollingTyre] = Cache(KEPT)
-
-
-@dataclass(frozen=True, eq=False)
-class ReducedTask:
-    """Variants for the reduced model: their changes, in order. ``time_to``: see `answers`."""
-
-    changes: Sequence[Mapping[str, Any]]
-    time_to: float | None = None
-
-
-def perform_reduced(task: ReducedTask, packed: PackedModel) -> tuple[ReducedOutcome, ...]:
-    """Run in a worker: the outcome of every variant, in the order of the task."""
-    model = packed.unpacked()
-    learnt = learnt_outcomes(model, task.changes, task.time_to)
-    if learnt is not None:
-        return tuple(learnt)
-    outcomes: dict[int, ReducedOutcome] = {}
-    studies, places = [], []
-    for place, changes in enumerate(task.changes):
-        try:
-            studies.append(model.base.study.replace(changes))
-            places.append(place)
-        except InputError as error:
-            outcomes[place] = Failed(str(error))
-    outcomes |= dict(zip(places, reduced_answers(model, studies, task.time_to), strict=True))
-    return tuple(outcomes[place] for place in range(len(task.changes)))
 
 
 ProgressCallback = Callable[[str, int, int], None]
@@ -165,137 +62,6 @@ HORIZONS = (0.1, 0.5)
 
 #: Sample points are stretched about the middle of the box, so that its corners need no extrapolation.
 STRETCH = 1.25
-
-
-@dataclass(frozen=True, eq=False)
-class PressTask:
-    """A variant to be pressed: the study, the variant's changes, and the counts of the mesh that all shapes share."""
-
-    packed: Bundle
-    changes: Mapping[str, Any]
-    counts: Counts | None
-
-
-def perform_press(task: PressTask) -> Press | Failed:
-    """Run in a worker: the strain cycles of a variant at the nodes of its mesh."""
-    base = base_of(task.packed, task.counts)
-    try:
-        return press_of(RollingTyre(base.study.replace(task.changes), base))
-    except InputError as error:
-        return Failed(str(error))
-
-
-@dataclass(frozen=True, eq=False)
-class FullRunTask:
-    """A full run of a variant for snapshots, and for answers if wanted.
-
-    Parameters
-    ----------
-    variant : the variant. fields : snapshots to take. time_tolerance : K, of the run. with_answers : compute answers?
-    counts : of the mesh that all shapes share; answers are then also those of a run on the variant's own mesh.
-    """
-
-    variant: Task
-    fields: int
-    time_tolerance: float
-    with_answers: bool
-    counts: Counts | None = None
-
-
-@dataclass(frozen=True, eq=False)
-class FullRun:
-    """Snapshots of a full run, and its answers; without answers the mapping is empty.
-
-    ``own_answers``: of a run on the variant's own mesh, if the shapes share another one.
-    """
-
-    snapshots: Snapshots
-    answers: Mapping[str, Any] = field(default_factory=dict)
-    own_answers: Mapping[str, Any] | None = None
-
-
-def perform_full_run(task: FullRunTask) -> FullRun | Failed:
-    """Run in a worker: a full run of a variant."""
-    from tyrefem.conduction import SolverError
-
-    variant, base = task.variant, base_of(task.variant.packed, task.counts)
-    try:
-        study = base.study.replace(variant.changes)
-        if not task.with_answers:
-            return FullRun(training_run(RollingTyre(study, base), task.time_tolerance))
-        study = study.replace({"numerics.tolerance": f"{task.time_tolerance:.6g} delta_degC"})
-        result = run(study, like=base)
-        at_own_mesh = None if task.counts is None else answers(run(study), variant.time_to)
-        return FullRun(snapshots(result, task.fields), answers(result, variant.time_to), at_own_mesh)
-    except (InputError, SolverError) as error:
-        return Failed(str(error))
-
-
-@dataclass(frozen=True, eq=False)
-class CandidateTask:
-    """Variants whose errors are estimated: their changes."""
-
-    changes: Sequence[Mapping[str, Any]]
-
-
-def perform_estimates(task: CandidateTask, packed: PackedModel) -> Array:
-    """Run in a worker: the estimated error of every variant, K; 0 where there is no estimate."""
-    model = packed.unpacked()
-    errors, tyres, places = np.zeros(len(task.changes)), [], []
-    for place, changes in enumerate(task.changes):
-        try:
-            tyres.append(model.tyre(model.base.study.replace(changes)))
-            places.append(place)
-        except InputError:
-            continue
-    try:
-        for numbers, part in batch_solutions(model, tyres, CORRECTION_TOLERANCE):
-            estimates = None if isinstance(part, Failed | NotReducible) else estimated_errors(part)
-            if estimates is not None:
-                errors[[places[number] for number in numbers]] = estimates
-    except InputError:
-        return errors
-    return errors
-
-
-@dataclass(frozen=True, eq=False)
-class CorrectionTask:
-    """Variants to be corrected by residuals; ``shares``: tau over the phase duration, per variant."""
-
-    changes: Sequence[Mapping[str, Any]]
-    shares: Sequence[float]
-
-
-@dataclass(frozen=True, eq=False)
-class Correction:
-    """Corrected snapshots of a reduced run; ``largest``: the largest correction, K."""
-
-    snapshots: Snapshots
-    largest: float
-
-
-def perform_corrections(work: CorrectionTask, packed: PackedModel) -> tuple[Correction | Failed | NotReducible, ...]:
-    """Run in a worker: corrections of reduced runs, in the order of the task."""
-    model = packed.unpacked()
-    base = model.base
-    outcomes: dict[int, Correction | Failed | NotReducible] = {}
-    tyres: dict[int, RollingTyre] = {}
-    for number, changes in enumerate(work.changes):
-        try:
-            tyres[number] = model.tyre(base.study.replace(changes))
-        except InputError as error:
-            outcomes[number] = Failed(str(error))
-    numbers = list(tyres)
-    try:
-        for places, part in batch_solutions(model, list(tyres.values()), CORRECTION_TOLERANCE):
-            for place, number in enumerate(numbers[task] for task in places):
-                if isinstance(part, Failed | NotReducible):
-                    outcomes[number] = part
-                else:
-                    outcomes[number] = Correction(*correction(part, place, work.shares[number]))
-    except InputError as error:
-        outcomes = {number: Failed(str(error)) for number in numbers} | outcomes
-    return tuple(outcomes[number] for number in range(len(work.changes)))
 
 
 def check_reducible(outcomes: Sequence[object]) -> None:

@@ -17,8 +17,8 @@ from tyrefem.variants.samples import chosen
 from tyrefem.variants.task_list import TaskList, task_size
 
 if TYPE_CHECKING:
+    from tyrefem.reduced.packed_model import PackedModel
     from tyrefem.reduced.surrogate import Surrogate
-    from tyrefem.reduced.training_rounds import PackedModel
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,7 +32,7 @@ class PiecesTask:
 
 def perform_pieces(task: PiecesTask, model: PackedModel) -> PackedOutcomes:
     """Run in a worker: the outcomes by place in the task; those that are `NotReducible` are left out."""
-    from tyrefem.reduced.training_rounds import ReducedTask, perform_reduced
+    from tyrefem.reduced.packed_model import ReducedTask, perform_reduced
 
     outcomes: dict[int, Outcome] = {}
     for first in range(0, len(task.changes), task.piece):
