@@ -7,6 +7,7 @@ Lines are written as in `tyrefem.schemas.answers`. Further keys may come; those 
 from __future__ import annotations
 
 from tyrefem.schemas.answers import ANSWERS, Keys
+from tyrefem.schemas.diagnosis_rows import DIAGNOSIS_INNER, DIAGNOSIS_ROWS
 from tyrefem.schemas.inner_rows import COMMON, INNER, MESH, SECTION
 
 _PLACE = {
@@ -16,17 +17,6 @@ _PLACE = {
 _DEVIATION = {
     "bias_K": "number?: Mean of computed minus measured.", "rms_K": "number?: Root mean square.",
     "n": "integer: Number of readings.",
-}  # fmt: skip
-_FITTED = {
-    "rms_K*": "number?: Root mean square of the residuals of the fitted runs.",
-    "held_out_rms_K*": "number?: The same of the runs held out.",
-    "misfit*": "number?: Sum of squares of the residuals over their standard deviation.",
-    "blocks*": "integer: Number of independent readings.", "p_value*": "number?: Probability of a larger misfit.",
-    "held_out_log_probability*": "number?: Of the runs held out, nats.",
-    "held_out_p*": "number?: Probability of a larger misfit of the runs held out.",
-    "largest_pull*": "number?: Largest distance of an uncertain input from its prior, in standard deviations.",
-    "pulls_p*": "number?: Probability of larger pulls.", "at_bound*": "list: Parameters at a bound.",
-    "converged*": "truth: Has the fit converged?",
 }  # fmt: skip
 _PLUGIN = {
     "kind": "text: effect, boundary law, tan delta law, strain law, friction law or sweep answer.",
@@ -38,11 +28,6 @@ _MEAN = {
     "low": "any: Least number, or first choice.", "high": "any: Greatest number, or last choice.",
     "number": "text: Varied number with its unit.",
     "effect": "number: Change of the answer from least to greatest.",
-}  # fmt: skip
-_RATE = {
-    "right": "integer: Cases that hold.", "of": "integer: Cases that count.", "rate": "number?: Their share.",
-    "low": "number: Lower end of the 95 % interval.", "high": "number: Upper end.", "goal*": "number: Goal.",
-    "goal_is*": "text: at least or at most.",
 }  # fmt: skip
 
 _POINT = {
@@ -141,126 +126,6 @@ ROWS: dict[str, Keys] = {
         "regions": "text: Regions that have it.",
     },
     "compare.overall": _DEVIATION,
-    "diagnose.effects[]": {
-        "name": "text: Effect.", "variant": "table: Sensor, place or law that it speaks of.",
-        "runs": "list?: Runs in which it acts; null: in all.", "probability": "number: Posterior probability.",
-        "parameters": "table: Parameter -> value, sd, unit.",
-        "moves": "table?: largest_K, sensor, run: largest change of a reading.",
-        "confidence": "number?: Least of that and of those without single sensors and runs.",
-        "support": "table?: Probability without each sensor and run.", "source": "text: Source of the effect.",
-    },
-    "diagnose.candidates[]": {
-        "name": "text: Effect.", "variant": "table: Sensor, place or law that it speaks of.",
-        "runs": "list?: Runs in which it acts; null: in all.",
-        "probability": "number: Posterior probability of being in the set.",
-        "log_evidence": "number?: Of the effect alone, nats.",
-        "log_evidence_gain": "number?: The same over no effect.",
-        "confounded_with": "list: Effects that explain the data as well.",
-        "parameters": "table: Parameter -> value, sd, unit.", **_FITTED,
-    },
-    "diagnose.sets[]": {
-        "effects": "list: Effects of the set.", "probability": "number: Posterior probability.",
-        "log_score_below_best": "number?: Below the best set, nats; null: far below.",
-        "credible": "truth: Is it among the sets that hold 95 %?", "fitted": "truth: Fitted with the full model?",
-        **_FITTED,
-    },
-    "diagnose.gap": {
-        "before": "table: rms_K and held_out_rms_K of the study.", "after": "table: The same of the amended study.",
-        "noise_K": "number: Noise of the readings.",
-    },
-    "diagnose.changes[]": {
-        "key": "text: Dotted name of a number of the study.", "keys": "list: Further numbers that change with it.",
-        "effect": "text?: The effect that it belongs to.", "variant": "table: Sensor, place or law of the effect.",
-        "runs": "list?: Runs in which it acts; null: in all.", "missing": "truth: Of a named effect, or missing heat?",
-        "original": "number: Value of the study.", "value": "number: Value of the amended study.",
-        "sd": "number?: Standard deviation.", "unit": "text: Unit.", "pull": "number?: Change over its prior's sd.",
-        "source": "text: What the amended study says of it.",
-    },
-    "diagnose.runs[]": {
-        "run": "text: Measured run.", "hold_out": "truth: Held out of the fit?", "drive": "table: What differs.",
-        "readings": "integer: Number of readings.", "end_s": "number: Last time.",
-        "noise_K": "table: Sensor -> noise.",
-    },
-    "diagnose.where": {
-        "sensor": "text: Sensor.", "region": "text: Its region.", "phase": "text: heating, cooling ...",
-        "run": "text: Measured run.", "hold_out": "truth: Held out of the fit?", "speed_m_s": "number: Speed.",
-        "mean_K": "number: Mean of measured minus computed.", "rms_K": "number: Root mean square.",
-        "sigma": "number: The mean over its standard deviation.",
-    },
-    "diagnose.noise": {
-        "stated_K": "number: Of the study.", "from_data_K": "number?: By the scatter of the readings.",
-        "used_K": "number: As used.", "correlated": "truth: Do errors of neighbouring readings go together?",
-        "series": "list: The same by run and sensor.",
-    },
-    "diagnose.again[]": {
-        "verdict": "text: Verdict of a further look.", "effects": "list: Named effects.",
-        "reasons": "list: Why this verdict.", "folder": "text?: Folder of its full results.",
-    },
-    "diagnose.strain_laws[]": {
-        "law": "text: Strain law.", "heat_factor": "number: Fitted factor on its heat.", "rms_K": "number: Of the fit.",
-        "held_out_rms_K": "number?: Of the runs held out.", "log_evidence_gain": "number: Over the study's law, nats.",
-    },
-    "diagnose.discrepancies[]": {
-        "name": "text: Error of the model.", "size_K": "number: Its standard deviation in the readings.",
-        "allows_for": "text: What it stands for.",
-        "probability": "number?: Posterior probability; null: of a strain law that was tried.",
-        "p_value": "number: Probability of a larger misfit beside it.",
-        "effects": "table: Effect -> probability beside it.", "parameters": "table: Parameter -> value, sd, unit.",
-    },
-    "plan.sets[]": {"effects": "text: Set of effects.", "probability": "number: Before the next run."},
-    "plan.steps[]": {
-        "step": "integer: Number of the step.", "kind": "text: run, sensor, or run + sensor.",
-        "run": "integer?: Number of the run.",
-        "drive": "text?: The drive in words.", "changes": "table?: Dotted name -> value in this drive.",
-        "duration_s": "number?: Duration.", "sensor": "text?: New sensor.", "place": "text?: Its place.",
-        "cost": "number: Cost of the step.", "total_cost": "number: Of all steps up to here.",
-        "gain_nats": "number: Expected information.", "total_gain_nats": "number: Of all steps up to here.",
-        "total_gain_sd_nats": "number: Its standard deviation.", "gain_per_cost": "number: Gain over cost.",
-        "expected_probability": "number: Of the true set, expected.", "named_share": "number: Share of named causes.",
-        "between": "list: The two sets that it tells apart best.", "pair_probability": "number: Of the right of both.",
-    },
-    "plan.candidates[]": {
-        "drive": "text?: Drive.", "sensor": "text?: Sensor.", "place": "text?: Its place.", "cost": "number: Cost.",
-        "gain_nats": "number: Expected information.", "gain_sd_nats": "number: Its standard deviation.",
-        "gain_per_cost": "number: Gain over cost.", "expected_probability": "number: Of the true set, expected.",
-    },
-    "isolability.effects[]": {
-        "effect": "text: Effect.", "unit": "text: Unit of its amplitude.", "usual": "number: Usual amplitude.",
-        "seen_from": "number?: Amplitude from which the data show it.",
-        "told_from": "number?: Amplitude from which it is told from all others.",
-        "last_rival": "text: The effect that is told from it last.",
-        "identifiable_at_usual": "truth: Can it be named at its usual amplitude?",
-    },
-    "blind.cases[]": {
-        "number": "integer: Number of the case.", "kind": "text: one, two, none, outside ...",
-        "hidden": "list: Hidden effects.", "amplitude": "table: Dotted name -> value over its prior's sd.",
-        "identifiable": "truth: Could it be named?",
-        "identifiable_alone*": "truth: Could it be, were the rest of the data's model the study's?",
-        "other_model*": "table: What else of the data's model differs.", "reason*": "text: Why the diagnosis failed.",
-        "verdict": "text: Of the diagnosis.",
-        "named": "list: Named effects.", "set": "list: Effects that remain possible.", "best": "text: Best set.",
-        "probability": "number?: Of the best set.", "rms_K": "table: before, after.",
-        "held_out_rms_K": "table: before, after.", "noise_K": "number: Noise.", "seconds": "number: Time, s.",
-        "inclusion": "table: Effect -> probability of being in the set.",
-        "leading": "list: The most probable sets with their probabilities.", "reasons": "list: Why this verdict.",
-        "doubts": "list: Doubts that kept the diagnosis from naming.", "p_value": "number?: Of the best set.",
-        "held_out_p": "number?: Of the runs held out.", "station_m": "number?: Hidden heat, along the meridian.",
-        "missing_station_m": "number?: Where the diagnosis finds it.", "length_m": "number: Length of the meridian.",
-        "points": "table: Numbers of simulations.",
-    },
-    "blind.rates{}": _RATE,
-    "blind.reliability[]": {"stated": "number: Mean stated probability.", **_RATE},
-    "blind.failures[]": {
-        "number": "integer: Number of the case.", "kind": "text: one, two, none, outside ...",
-        "hidden": "list: Hidden effects.", "amplitude": "table: Dotted name -> value over its prior's sd.",
-        "fault": "text: What is wrong.", "verdict": "text: Of the diagnosis.", "named": "list: Named effects.",
-        "leading": "list: The most probable sets with their probabilities.", "why": "text: The diagnosis's reasons.",
-        "other_model*": "table: What else of the data's model differs.",
-    },
-    "blind.by_effect[]": {
-        "effect": "text: Effect.", "cases": "integer: Cases.", "identifiable": "integer: That could be named.",
-        "named": "integer: That were.", "else": "list: What was named in its place.",
-    },
     "sweep.sample": {
         "sample": "text: grid, sobol, latin-hypercube, list ...", "count": "integer?: Number of variants wanted.",
         "seed": "integer?: Seed.", "variants": "integer: Number of variants.",
@@ -403,6 +268,7 @@ ROWS: dict[str, Keys] = {
         "*": "any: What else the picture shows.",
     },
     "show.facts.regions[]": {"*": "any: Column of the table that is printed -> value."},
+    **DIAGNOSIS_ROWS,
     "list.entries[]": {
         "name": "text: Name.", "title*": "text: Title.", "file*": "text?: File.",
         "side*": "text: Side of a boundary law.",
@@ -419,7 +285,7 @@ def rows_of(command: str) -> dict[str, Keys]:
     """
     known = {key.removesuffix("*") for key in ANSWERS[command]}
     places = {place: keys for key, rows in COMMON.items() if key in known for place, keys in rows.items()}
-    inner = {**ROWS, **INNER}.items()
+    inner = {**ROWS, **INNER, **DIAGNOSIS_INNER}.items()
     places |= {place.partition(".")[2]: keys for place, keys in inner if place.partition(".")[0] == command}
     if "plugins[]" not in places and any(key.removesuffix("*") == "plugins" for key in ANSWERS[command]):
         places["plugins[]"] = _PLUGIN
