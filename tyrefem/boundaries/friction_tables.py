@@ -84,11 +84,6 @@ class IceRow:
     to_melting: float
     melting: str
 
-    @property
-    def distance_of_correction(self) -> float:
-        """Distance behind the pad with which equation 4 gives this row's correction, m."""
-        return distance_of_fall_off(self.measured / self.corrected, self.length)
-
     def predicted(self, distance: float) -> float:
         """Rise at the exit edge from the measured one by equation 4, K."""
         return self.measured / fall_off(distance, self.length)

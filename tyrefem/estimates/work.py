@@ -43,8 +43,6 @@ BODY, INFLATE, LOAD, LARGE_BODY, LARGE = 45e3, 2e-3, 2e-4, 0.47e6, 0.015
 ROLLING_TYRE, ROLLING_STATE = 3e-3, 2e-3
 #: Bytes per node that an inflated tyre keeps (nine pressures of the passenger), and the number of tyres kept.
 KEPT, REMEMBERED = 25e3, 16
-#: Bytes of a mesh per vertex (31 000 to 62 000 vertices).
-VERTEX = 650.0
 # A variant of a sweep with all its 43 answers in a table, joined from parts, and each changed number: bytes (4 000 to
 # 80 000 variants of four numbers: 1.2 kB a variant; without the table 0.3 kB, on disk or packed).
 VARIANT, CHANGE = 1.0e3, 100.0

@@ -42,7 +42,6 @@ class Radial:
     belts: tuple[Belt, ...]
     apex: tuple[tuple[str, float], ...]
     title: str
-    bead_fill: float
     share_end: float | None = None
     reinforced: bool = False
     belt_power: tuple[float | None, str] = (None, "")

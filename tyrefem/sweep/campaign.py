@@ -63,11 +63,6 @@ class CampaignData(Brief):
                     raise
         return cls(study, study.cases)
 
-    @classmethod
-    def case_of(cls, study: StudyData, name: str) -> StudyData:
-        """The study of a case by its name, as `Study.case`."""
-        return study.case(name)
-
     def case_study(self, case: Case) -> StudyData:
         """The study of a case."""
         return self.study.case_study(case)

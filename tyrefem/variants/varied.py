@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tyrefem.errors import InputError
-from tyrefem.inputs.changes import check_factor, scaled, value_at
+from tyrefem.inputs.changes import check_factor, scaled
 from tyrefem.inputs.name_patterns import number_at
 from tyrefem.quantity import KELVIN, amount_parts, parse
 from tyrefem.variants.card import VaryCard
@@ -360,10 +360,3 @@ def _alike(value: Any, other: Any) -> bool:
         return math.isclose(parse(expected, unit or "1"), number, rel_tol=1e-6, abs_tol=1e-12)
     except InputError:
         return False
-
-
-def scaled_value(study: StudyData, key: str, factor: float, digits: int = DIGITS) -> Any:
-    """The study's value at a dotted name times a factor, as in a study file."""
-    value = value_at(study.data, key, study.folder)
-    check_factor(value)
-    return scaled(value, factor, digits)

@@ -101,18 +101,6 @@ class StrainHarmonics:
         weights = np.stack([r * r, z * z, t * t, r * z, r * t, z * t])
         return np.asarray(np.einsum("cep,cept->ept", weights, self.strain(angles, elements)))
 
-    def cord_tension(
-        self,
-        direction: Array,
-        stiffness: float,
-        angles: Array,
-        elements: Any = slice(None),
-        inflated: Array | float = 0,
-    ) -> Array:
-        """(n_elements, n_points, n_angles) tension per cord, N: ``inflated`` + E A e, with E A in N."""
-        change = stiffness * self.along(direction, angles, elements)
-        return np.asarray(np.asarray(inflated)[..., None] + change)
-
     def belt_edge_shear(self, region: str, count: int = 180) -> LargestEdgeShear:
         """The largest range of a shear strain over a revolution in the outermost elements of a region.
 

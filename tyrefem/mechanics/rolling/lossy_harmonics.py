@@ -61,10 +61,6 @@ class LossyHarmonics(Harmonics):
         values = tangent[:, None, None] * (a + n * b + n * n * c)
         return sp.coo_matrix((values.ravel(), place), shape=(size, size)).tocsc()
 
-    def elastic_stiffness(self, n: float) -> Any:
-        """K_n without loss."""
-        return super().stiffness(n)
-
     def stiffness(self, n: float) -> Any:
         """K_n - i K''_n, sparse, N/m per radian."""
         return (super().stiffness(n) - 1j * self.loss(n)).tocsc()

@@ -144,8 +144,9 @@ class _Reader:
             raise InputError(
                 f"the cords fill {share.max():.0%} of the region at its narrowest place", field="cords.ends"
             )
-        weaker = cords.modulus if cords.compression_modulus is None else cords.compression_modulus
-        return CordLayer(angle, meridian, share * cords.modulus, weaker / cords.modulus, cords.modulus * area)
+        return CordLayer(
+            angle, meridian, share * cords.modulus, cords.in_compression / cords.modulus, cords.modulus * area
+        )
 
     def bias_plies(self, region: str, card: MaterialCard) -> CordLayer | None:
         if card.cord is None or card.cord.ply_shear_modulus is None:

@@ -91,7 +91,6 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
         belts,
         (("apex", 1.0),),
         f"{size.text} radial aircraft tyre by its size",
-        BEAD_FILL,
         reinforced=True,
         belt_power=(6.0, f"{ESTIMATE}: many belt plies near the circumference carry an even share to near their edge"),
     )

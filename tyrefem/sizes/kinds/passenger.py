@@ -145,9 +145,7 @@ def draw_with(
         10e-3,
     )
     belts = (Belt("belt-1", 2.6e-3), Belt("belt-2", 1.1e-3), Belt("cap-ply", 0.0))
-    radial = Radial(
-        size, rule, rim, "body-ply", belts, (("apex", 1.0),), f"{size.text} {size.kind} radial by its size", BEAD_FILL
-    )
+    radial = Radial(size, rule, rim, "body-ply", belts, (("apex", 1.0),), f"{size.text} {size.kind} radial by its size")
     radial = with_line(radial)
     rule.check_all_used()
     ply = radial.ply_card("passenger-body-ply", 1100, 0.55e-3)

@@ -123,7 +123,6 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
         belts,
         (("apex-soft", 0.5), ("apex", 0.5)),
         f"{size.text} truck radial by its size",
-        BEAD_FILL,
         reinforced=True,
         belt_power=(None, "solved for: within 2 to 5, the power with which the crown is as flat as 2.4 nominal widths"),
     )
