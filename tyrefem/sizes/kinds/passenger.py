@@ -11,6 +11,7 @@ from tyrefem.sizes.drawn import Drawn
 from tyrefem.sizes.radial import Radial
 from tyrefem.sizes.radial_layers import RadialLayers
 from tyrefem.sizes.radial_line import with_line
+from tyrefem.sizes.rim import Rim
 from tyrefem.sizes.road import (
     STANDARD,
     check_rim_diameter,
@@ -37,6 +38,23 @@ def draw_with(
     size: TyreSize, rule: Rules, *, plies: int, tread: float, pressure: float, density: float, apex: float
 ) -> Drawn:
     """A passenger construction. ``tread``: gauge, m; ``density`` of the load, kg/l; ``apex`` over section height."""
+    rim, outer, pressure = _rim_and_rating(size, rule, pressure, density)
+    tread_width = _tread_rules(size, rule)
+    _layer_rules(rule, plies, tread, tread_width, pressure)
+    _bead_rules(size, rule, outer / 2 - tread - 5e-3, pressure, apex)
+    belts = (Belt("belt-1", 2.6e-3), Belt("belt-2", 1.1e-3), Belt("cap-ply", 0.0))
+    radial = Radial(size, rule, rim, "body-ply", belts, (("apex", 1.0),), f"{size.text} {size.kind} radial by its size")
+    radial = with_line(radial)
+    rule.check_all_used()
+    ply = radial.ply_card("passenger-body-ply", 1100, 0.55e-3)
+    cards = ("passenger-belt", "passenger-belt", "passenger-cap-ply")
+    belt_cards = {belt.region: radial.belt_card(belt, card) for belt, card in zip(belts, cards, strict=True)}
+    bead_card = radial.bead_material("passenger-bead", 1e-3)
+    return RadialLayers(radial).drawn(radial_cards("body-ply", ply, belt_cards, "rubber-tread-passenger", bead_card))
+
+
+def _rim_and_rating(size: TyreSize, rule: Rules, pressure: float, density: float) -> tuple[Rim, float, float]:
+    """The rim, the outer diameter, m, and the rated pressure, Pa."""
     series, height = size.series or 0.0, size.section_height or 0.0
     diameter = check_rim_diameter(size)
     inches = size.outside_diameter is not None
@@ -64,6 +82,13 @@ def draw_with(
             pressure,
             f"reference pressure {pressure / 1e3:g} kPa ({STANDARD}); mean of eight sizes, 3 % either way",
         )
+    return rim, outer, pressure
+
+
+def _tread_rules(size: TyreSize, rule: Rules) -> float:
+    """Width and radii of tread and crown; return the width, m."""
+    series = size.series or 0.0
+    inches = size.outside_diameter is not None
     tread_share = 1.075 - 0.5 * series
     words = "design tread width (1.075 - 0.5 series) x nominal width (from memory of the Tire and Rim Association)"
     if inches:
@@ -95,6 +120,11 @@ def draw_with(
         0.0,
         min(0.4 * tread_width, 0.7 * rounding),
     )
+    return tread_width
+
+
+def _layer_rules(rule: Rules, plies: int, tread: float, tread_width: float, pressure: float) -> None:
+    """Ply, belts, and the gauges of all layers."""
     rule("cord_angle", 1.5707963268, "deg", "radial body ply", 1.4, 1.5708)
     belt = rule("belt_1_width", 0.95 * tread_width, "mm", f"{ESTIMATE}, 0.95 tread widths", 0.03)
     rule("belt_2_width", belt - 10e-3, "mm", f"{ESTIMATE}, 10 mm narrower than belt-1", 0.02)
@@ -124,8 +154,12 @@ def draw_with(
         2e-4,
     )
     rule("chafer_gauge", 2.8e-3, "mm", f"{ESTIMATE}: rim strip at the bead", 1.2e-3)
-    crown = outer / 2 - tread - 5e-3
-    area = bead_wire_area(rule, crown, diameter, pressure)
+
+
+def _bead_rules(size: TyreSize, rule: Rules, crown: float, pressure: float, apex: float) -> None:
+    """Bead, apex, turn-up and chafer; ``crown``: radius of the carcass line, m."""
+    height = size.section_height or 0.0
+    area = bead_wire_area(rule, crown, check_rim_diameter(size), pressure)
     bead = rule(
         "bead_height",
         1.36 * (area / BEAD_FILL) ** 0.5,
@@ -144,12 +178,3 @@ def draw_with(
         f"{ESTIMATE}: along the line from the seat",
         10e-3,
     )
-    belts = (Belt("belt-1", 2.6e-3), Belt("belt-2", 1.1e-3), Belt("cap-ply", 0.0))
-    radial = Radial(size, rule, rim, "body-ply", belts, (("apex", 1.0),), f"{size.text} {size.kind} radial by its size")
-    radial = with_line(radial)
-    rule.check_all_used()
-    ply = radial.ply_card("passenger-body-ply", 1100, 0.55e-3)
-    cards = ("passenger-belt", "passenger-belt", "passenger-cap-ply")
-    belt_cards = {belt.region: radial.belt_card(belt, card) for belt, card in zip(belts, cards, strict=True)}
-    bead_card = radial.bead_material("passenger-bead", 1e-3)
-    return RadialLayers(radial).drawn(radial_cards("body-ply", ply, belt_cards, "rubber-tread-passenger", bead_card))

@@ -10,6 +10,7 @@ from tyrefem.sizes.drawn import Drawn
 from tyrefem.sizes.radial import Radial
 from tyrefem.sizes.radial_layers import RadialLayers
 from tyrefem.sizes.radial_line import with_line
+from tyrefem.sizes.rim import Rim
 from tyrefem.sizes.road import check_rim_diameter, design_width, measuring_rim, rated, road_rim
 from tyrefem.sizes.rules import Rules
 
@@ -26,7 +27,37 @@ BEAD_MODULUS = (56e6, "estimate: four times 14 MPa of shear, that of fillers")
 
 def draw(size: TyreSize, rule: Rules) -> Drawn:
     """One steel body ply, a transition belt, two working belts and a protector belt."""
-    width, height = size.width, size.section_height or 0.0
+    rim, outer, pressure = _rim_and_rating(size, rule)
+    wide_base = size.width >= WIDE_BASE
+    low = wide_base or (size.series or 1.0) <= LOW_SERIES + 1e-9
+    _tread_rules(size.width, rule, low=low)
+    tread = _layer_rules(size.width, rule, low=low)
+    _bead_rules(size, rule, outer / 2 - tread - 15e-3, pressure)
+    belts = (Belt("belt-1", 7e-3), Belt("belt-2", 2.4e-3), Belt("belt-3", 1.6e-3), Belt("belt-4", 0.0))
+    radial = Radial(
+        size,
+        rule,
+        rim,
+        "body-ply",
+        belts,
+        (("apex-soft", 0.5), ("apex", 0.5)),
+        f"{size.text} truck radial by its size",
+        reinforced=True,
+        belt_power=(None, "solved for: within 2 to 5, the power with which the crown is as flat as 2.4 nominal widths"),
+    )
+    radial = with_line(radial, BEAD_MODULUS if wide_base else None)
+    rule.check_all_used()
+    ply = radial.ply_card("truck-body-ply", 600, 0.95e-3)
+    cards = ("truck-transition-belt", "truck-belt", "truck-belt", "truck-protector-belt")
+    belt_cards = {belt.region: radial.belt_card(belt, card) for belt, card in zip(belts, cards, strict=True)}
+    bead_card = radial.bead_material("truck-bead", 1.6e-3)
+    materials = radial_cards("body-ply", ply, belt_cards, "rubber-tread-truck", bead_card)
+    return RadialLayers(radial).drawn(materials | radial.fabric_card() | {"apex-soft": "rubber-apex-soft"})
+
+
+def _rim_and_rating(size: TyreSize, rule: Rules) -> tuple[Rim, float, float]:
+    """The rim, the outer diameter, m, and the rated pressure, Pa."""
+    height = size.section_height or 0.0
     diameter = check_rim_diameter(size)
     rim_width = measuring_rim(
         size, rule, 0.75, 0.75 * INCH, f"{STANDARD}: measuring rim, 0.75 nominal widths to 3/4 in"
@@ -45,8 +76,11 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
     )
     design_width(size, rule, rim_width, 0.75)
     pressure = rated(size, rule, 61.0, 850e3, f"850 kPa ({STANDARD}); mean of three sizes, 4 % either way")
-    wide_base = width >= WIDE_BASE
-    low = wide_base or (size.series or 1.0) <= LOW_SERIES + 1e-9
+    return rim, outer, pressure
+
+
+def _tread_rules(width: float, rule: Rules, *, low: bool) -> None:
+    """Width and radii of tread and crown; ``low``: a low tyre or a wide-base single."""
     tread_share, tread_words = 0.79, "mean of five highway ribs, 0.74 to 0.82"
     if low:
         tread_share, tread_words = 0.86, "low tyres and wide-base singles, 0.83 to 0.88"
@@ -66,6 +100,10 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
         0.1,
         20,
     )
+
+
+def _layer_rules(width: float, rule: Rules, *, low: bool) -> float:
+    """Ply, belts, and the gauges of all layers; return the tread's gauge, m."""
     rule("cord_angle", 1.5707963268, "deg", "radial body ply", 1.4, 1.5708)
     for name, usual, broad, gauge, words in (
         ("belt_1", 0.57, 0.72, 2.0e-3, "transition belt"),
@@ -98,7 +136,13 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
         2e-4,
     )
     rule("chafer_gauge", 3.5e-3, "mm", f"{ESTIMATE}: rim strip at the bead", 1.2e-3)
-    area = bead_wire_area(rule, outer / 2 - tread - 15e-3, diameter, pressure)
+    return tread
+
+
+def _bead_rules(size: TyreSize, rule: Rules, crown: float, pressure: float) -> None:
+    """Bead, apex, turn-up, chafer and its fabric; ``crown``: radius of the carcass line, m."""
+    height = size.section_height or 0.0
+    area = bead_wire_area(rule, crown, check_rim_diameter(size), pressure)
     bead = rule(
         "bead_height",
         1.14 * (area / BEAD_FILL) ** 0.5,
@@ -114,23 +158,3 @@ def draw(size: TyreSize, rule: Rules) -> Drawn:
     rule("toe_gauge", 5e-3, "mm", f"{ESTIMATE}: rubber below the wires", 2e-3)
     rule("chafer_height", 0.34 * height, "mm", f"{ESTIMATE}: along the line from the seat", 10e-3)
     rule("fabric_height", 0.25 * height, "mm", f"{ESTIMATE}: outer leg of the chafer's fabric, along the line", 10e-3)
-    belts = (Belt("belt-1", 7e-3), Belt("belt-2", 2.4e-3), Belt("belt-3", 1.6e-3), Belt("belt-4", 0.0))
-    radial = Radial(
-        size,
-        rule,
-        rim,
-        "body-ply",
-        belts,
-        (("apex-soft", 0.5), ("apex", 0.5)),
-        f"{size.text} truck radial by its size",
-        reinforced=True,
-        belt_power=(None, "solved for: within 2 to 5, the power with which the crown is as flat as 2.4 nominal widths"),
-    )
-    radial = with_line(radial, BEAD_MODULUS if wide_base else None)
-    rule.check_all_used()
-    ply = radial.ply_card("truck-body-ply", 600, 0.95e-3)
-    cards = ("truck-transition-belt", "truck-belt", "truck-belt", "truck-protector-belt")
-    belt_cards = {belt.region: radial.belt_card(belt, card) for belt, card in zip(belts, cards, strict=True)}
-    bead_card = radial.bead_material("truck-bead", 1.6e-3)
-    materials = radial_cards("body-ply", ply, belt_cards, "rubber-tread-truck", bead_card)
-    return RadialLayers(radial).drawn(materials | radial.fabric_card() | {"apex-soft": "rubber-apex-soft"})
