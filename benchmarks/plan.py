@@ -37,8 +37,9 @@ from tyrefem.diagnose.blind.synthetic import Logger, record
 from tyrefem.diagnose.data.residuals import residuals_of
 from tyrefem.diagnose.data.runs import measured_drive
 from tyrefem.diagnose.data.sensitivities import Sensitivities, responses, sensitivities, unknowns_of
+from tyrefem.diagnose.forward.drive_response import DriveResponse
 from tyrefem.diagnose.forward.evaluations import Evaluations
-from tyrefem.diagnose.forward.forward_model import DriveResponse, ForwardModel
+from tyrefem.diagnose.forward.forward_model import ForwardModel
 from tyrefem.diagnose.forward.sampling import DriveSampling, SensorSampling
 from tyrefem.diagnose.inference.evidence import posterior
 from tyrefem.diagnose.inference.linear_model import LinearModel

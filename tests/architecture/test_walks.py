@@ -16,7 +16,7 @@ from thermocouple_walk import ThermocoupleWalk, thermocouple_walk
 
 ROOT = Path(__file__).resolve().parents[2]
 #: Modules on a walk at most.
-MOST_OF_SPEED, MOST_OF_A_THERMOCOUPLE = 9, 12
+MOST_OF_SPEED, MOST_OF_A_THERMOCOUPLE = 9, 13
 #: Where ramps of the drive's motion are read: nobody else reads the drive's speed.
 READERS = {"inputs/drive.py", "inputs/motion.py"}
 MOTION = {"speed", "slip_speed", "slip_ratio", "slip_angle"}
@@ -48,7 +48,7 @@ def test_every_later_heat_source_comes_from_the_same_door(speed) -> None:
     assert {walk.visits for walk in speed.later} == {tail}
 
 
-def test_a_thermocouple_enters_at_most_twelve_modules_forwards_only(thermocouple) -> None:
+def test_a_thermocouple_enters_at_most_thirteen_modules_forwards_only(thermocouple) -> None:
     modules = thermocouple.modules
     assert modules[0].startswith("tyrefem.measured.")
     assert thermocouple.form(modules[-1]) == "Diagnosis"

@@ -18,15 +18,16 @@ from tyrefem.diagnose.data.runs import measured_drive
 from tyrefem.diagnose.data.sensitivities import responses, unknowns_of
 from tyrefem.diagnose.fitting.criterion import BIC
 from tyrefem.diagnose.fitting.exhaustive import Exhaustive
+from tyrefem.diagnose.forward.drive_response import DriveResponse
 from tyrefem.diagnose.forward.evaluations import Evaluations
-from tyrefem.diagnose.forward.forward_model import FOLLOWED, NO_ANSWER, NOT_FOLLOWED, DriveResponse, ForwardModel
+from tyrefem.diagnose.forward.forward_model import FOLLOWED, NO_ANSWER, NOT_FOLLOWED, ForwardModel
 from tyrefem.diagnose.forward.multifidelity import DriveCertificate, Predictions
 from tyrefem.diagnose.forward.reduced_drive import Modes, ReducedDrive
+from tyrefem.diagnose.ranking import Ranking, allowed_error
 from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
 from tyrefem.diagnose.unknowns.candidates import Candidate, catalogue_candidates
 from tyrefem.diagnose.unknowns.unknown import Unknown, with_values
 from tyrefem.diagnose.verdicts.verdict import NO_GAP, UNEXPLAINED, Judgement, RankedSet
-from tyrefem.diagnose.workflow import Ranking, allowed_error
 from tyrefem.effects import catalogue
 
 Array = NDArray[np.float64]

@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from tyrefem.compare.reduced_inputs import ReducedInputSettings
     from tyrefem.diagnose.fitting.criterion import Criterion
     from tyrefem.diagnose.fitting.selection import Strategy
+    from tyrefem.diagnose.forward.drive_response import DriveResponse
     from tyrefem.diagnose.forward.evaluations import ProgressStore
-    from tyrefem.diagnose.forward.forward_model import DriveResponse
     from tyrefem.diagnose.settings import DiagnosisSettings
     from tyrefem.diagnose.unknowns.candidates import CandidateSpace
     from tyrefem.variants.answer_store import AnswerStore

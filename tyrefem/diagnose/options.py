@@ -12,8 +12,8 @@ from tyrefem.diagnose.fitting.criterion import Criterion, LogEvidence
 from tyrefem.diagnose.fitting.exhaustive import Exhaustive
 from tyrefem.diagnose.fitting.forward_selection import ForwardSelection
 from tyrefem.diagnose.fitting.selection import Strategy
+from tyrefem.diagnose.forward.drive_response import DriveResponse
 from tyrefem.diagnose.forward.evaluations import ProgressStore, WorkerModels
-from tyrefem.diagnose.forward.forward_model import DriveResponse
 from tyrefem.diagnose.forward.strain_law_study import mesh_of_law
 from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
 from tyrefem.diagnose.unknowns.candidates import CandidateSpace, catalogue_candidates

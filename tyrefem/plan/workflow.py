@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Any, TypeGuard
 
 from tyrefem.diagnose.diagnosis import DiagnosisData
+from tyrefem.diagnose.forward.drive_response import DriveResponse
 from tyrefem.diagnose.forward.evaluations import ProgressStore
-from tyrefem.diagnose.forward.forward_model import DriveResponse
 from tyrefem.diagnose.layout.isolability import layout_notes
 from tyrefem.diagnose.options import SimulationWork
 from tyrefem.diagnose.settings import DiagnosisSettings

@@ -15,8 +15,9 @@ from tyrefem.diagnose.beside.discrepancy import other_structure
 from tyrefem.diagnose.blind.other_model import STRUCTURAL_MESH, STRUCTURAL_STEP, OtherModel, drawn_model
 from tyrefem.diagnose.blind.synthetic import HotRing, Lamp, Logger, record, synthetic_mesh, theta_steps
 from tyrefem.diagnose.diagnosis import DiagnosisData
+from tyrefem.diagnose.forward.drive_response import DriveResponse
 from tyrefem.diagnose.forward.evaluations import Evaluations, evaluating
-from tyrefem.diagnose.forward.forward_model import DriveResponse, ForwardModel
+from tyrefem.diagnose.forward.forward_model import ForwardModel
 from tyrefem.diagnose.inference.linear_model import LinearModel
 from tyrefem.diagnose.layout.isolability import MARGIN, competitors_of, layout_sensitivities, margins, planned
 from tyrefem.diagnose.unknowns.candidates import Candidate, Members, SetPrior, catalogue_candidates

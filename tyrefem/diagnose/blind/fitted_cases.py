@@ -23,11 +23,11 @@ from tyrefem.diagnose.forward.multifidelity import Predictions
 from tyrefem.diagnose.layout.linear_layout import LinearLayout, competing, linear_layout
 from tyrefem.diagnose.layout.quick_cases import DrawnCause, QuickCase, drawn, judged_case
 from tyrefem.diagnose.options import Method
+from tyrefem.diagnose.ranking import rank
 from tyrefem.diagnose.settings import DEFAULT
 from tyrefem.diagnose.unknowns.candidates import Members
 from tyrefem.diagnose.unknowns.heat_patches import patches
 from tyrefem.diagnose.unknowns.unknown import Unknown
-from tyrefem.diagnose.workflow import rank
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
 from tyrefem.output import jsonable

@@ -35,9 +35,10 @@ from tyrefem.diagnose.blind.criteria import (
 )
 from tyrefem.diagnose.blind.kept_cases import CASES, computed_cases, keep_cases, kept_cases, resuming, tag_for
 from tyrefem.diagnose.data.sensitivities import responses, unknowns_of
+from tyrefem.diagnose.forward.drive_response import DriveResponse
 from tyrefem.diagnose.forward.effort import CASE, SENSITIVITIES, STRUCTURAL_CASE, check_effort
 from tyrefem.diagnose.forward.evaluations import ProgressStore, evaluating
-from tyrefem.diagnose.forward.forward_model import DriveResponse, ForwardModel
+from tyrefem.diagnose.forward.forward_model import ForwardModel
 from tyrefem.diagnose.layout.isolability import candidates_of, layout_notes, planned
 from tyrefem.errors import InputError, nearest
 from tyrefem.inputs.study import StudyData

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
 from tyrefem.diagnose.data.runs import MeasuredDrive
-from tyrefem.diagnose.data.sensitivities import DriveResponse, Sensitivities
+from tyrefem.diagnose.data.sensitivities import Sensitivities
+from tyrefem.diagnose.forward.drive_response import DriveResponse
 from tyrefem.diagnose.inference.linear_model import DesignMatrix, LinearModel
 from tyrefem.diagnose.inference.shared_error import SharedError
 from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 
@@ -9,10 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.compare.experiment import Experiment
-from tyrefem.compare.omitted import within
+from tyrefem.compare.omitted import ERROR, columns_note, outside_notes, start_notes, within
 from tyrefem.diagnose.data.noise import ReadingNoise, noise_of
 from tyrefem.diagnose.forward.sampling import DriveSampling, SensorSampling
 from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
+from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
 
 Array = NDArray[np.float64]
@@ -99,3 +101,27 @@ def with_noise_of_data(
         return replace(readings, noise=noise.used, rounding=noise.rounding, origin=noise)
 
     return tuple(replace(run, sensors=tuple(judged(readings) for readings in run.sensors)) for run in runs)
+
+
+def measured_drives(
+    study: StudyData, planned: Sequence[Experiment], settings: DiagnosisSettings
+) -> tuple[tuple[MeasuredDrive, ...], tuple[str, ...]]:
+    """The measured runs as blocks of readings within the simulated drives, and notes on what is left out.
+
+    A held-out run with readings at 0 s only is left out: they are the initial temperature, and test nothing.
+    """
+    runs = [run for run in (measured_drive(experiment, study, settings) for experiment in planned) if run.sensors]
+    fitted = [run for run in runs if not run.hold_out]
+    if not fitted:
+        outside = "; ".join(outside_notes(study, planned)).replace(ERROR, "")
+        message = f"no fitted run has a reading within the simulated drive: {outside}"
+        raise InputError(message, field="measured", file=study.file)
+    for run in fitted:
+        if run.last <= 0:
+            raise InputError(f"run '{run.name}' has readings at 0 s only", field="measured", file=study.file)
+    empty = [run for run in runs if run.last <= 0]
+    notes = (*outside_notes(study, planned), *start_notes(study, planned), *columns_note(planned))
+    return with_noise_of_data(tuple(run for run in runs if run not in empty), settings), (
+        *(f"held-out run '{run.name}' was left out: it has readings at 0 s only, which test nothing" for run in empty),
+        *(note.removeprefix("Note: ") for note in notes),
+    )

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
 from tyrefem.cache import Cache
+from tyrefem.diagnose.forward.drive_response import DriveResponse
 from tyrefem.diagnose.forward.evaluations import Evaluations
-from tyrefem.diagnose.forward.forward_model import DriveResponse
 from tyrefem.diagnose.forward.reduced_drive import Modes
 from tyrefem.diagnose.forward.sampling import DriveSampling
 from tyrefem.diagnose.inference.linear_model import DesignMatrix

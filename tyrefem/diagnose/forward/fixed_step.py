@@ -1,12 +1,9 @@
-"""Fixed-step simulation of a fit: readings only, without error control and heat budget.
-
-The sensitivities of the readings come from tangents, from a second simulation, or from a second measurement.
-"""
+"""Fixed-step simulation of a fit: readings only, without error control and heat budget."""
 
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, partial
 from itertools import pairwise
@@ -18,14 +15,13 @@ from scipy.interpolate import CubicSpline
 from tyrefem.cache import Cache, Content
 from tyrefem.conduction.fixed_steps import GAMMA, fixed_step_solution
 from tyrefem.conduction.points import located
-from tyrefem.conduction.sensitivity import Tangents, stage_times
-from tyrefem.diagnose.unknowns.unknown import Unknown
+from tyrefem.conduction.sensitivity import stage_times
 from tyrefem.effects import catalogue
 from tyrefem.geometry.wall import inside_mesh
 from tyrefem.inputs.study import StudyData
 from tyrefem.mechanics.nearby_cycles import NearbyCycles
 from tyrefem.simulation.rolling_tyre import RollingTyre
-from tyrefem.simulation.sensors import displacements, logged, recorded, recorded_change, true_places
+from tyrefem.simulation.sensors import displacements, logged, recorded, true_places
 from tyrefem.simulation.surroundings import GAS, RIM
 
 Array = NDArray[np.float64]
@@ -267,66 +263,3 @@ def on_grid(times: Array, history: Array, starts: tuple[float, ...], grid: Array
         if inside.any():
             values[inside] = CubicSpline(times[in_phase], history[in_phase], axis=0)(grid[inside])
     return values
-
-
-@dataclass(frozen=True, eq=False)
-class ReadingSensitivities:
-    """Sensitivities of the readings of a simulated drive.
-
-    Parameters
-    ----------
-    again : number of an unknown -> second simulation or measurement with the unknown one step further.
-    columns : numbers of the other unknowns. tangents : dT/dx of these unknowns, in this order.
-    moved : number of an unknown that moves one sensor -> the sensor, and the direction (0: along, 1: in depth).
-    failed : numbers of unknowns with which no tyre can be built; their sensitivities are NaN.
-    """
-
-    base: FixedStepRun
-    unknowns: tuple[Unknown, ...]
-    again: Mapping[int, FixedStepRun]
-    columns: Sequence[int]
-    tangents: Tangents | None
-    failed: Sequence[int] = ()
-    moved: Mapping[int, tuple[str, int]] = field(default_factory=dict)
-
-    @property
-    def of_tangents(self) -> list[Unknown]:
-        """The unknowns whose sensitivities come from tangents."""
-        return [self.unknowns[column] for column in self.columns]
-
-    def slopes(self, sensors: Sequence[str]) -> dict[str, Array]:
-        """Sensor -> (n_grid, n_unknowns) d(reading)/dx."""
-        base = self.base
-        slopes = {sensor: np.zeros((len(base.grid), len(self.unknowns))) for sensor in sensors}
-        for sensor in sensors:
-            slopes[sensor][:, list(self.failed)] = np.nan
-        for column, (sensor, direction) in self.moved.items():
-            if sensor in slopes:
-                slopes[sensor][:, column] = self._over_places[sensor][:, direction]
-        for column, other in self.again.items():
-            for sensor in sensors:
-                change = other.readings[sensor] - base.readings[sensor]
-                slopes[sensor][:, column] = change / self.unknowns[column].step
-        if self.tangents is not None:
-            for sensor, of_tangents in self._from_tangents(self.tangents, sensors).items():
-                slopes[sensor][:, self.columns] = of_tangents
-        return slopes
-
-    @cached_property
-    def _over_places(self) -> dict[str, Array]:
-        """Sensor -> (n_grid, 2) d(reading)/d(place) along the meridian and in depth, K/m."""
-        still = np.zeros((len(self.base.study.stated_places), 2))
-        return {name: each[1:].T for name, each in self.base.at_displaced(still).items()}
-
-    def _from_tangents(self, tangents: Tangents, sensors: Sequence[str]) -> dict[str, Array]:
-        base, gas, slopes = self.base, list(self.base.tyre.problem.reservoirs), {}
-        for sensor in sensors:
-            if sensor in (GAS, RIM):
-                known = sensor in gas
-                column = tangents.reservoirs[:, :, gas.index(sensor)] if known else np.zeros(tangents.values.shape[:2])
-                slopes[sensor] = logged(base.study, base.grid, base.dense(column.T, tangents.times))
-        if len(slopes) < len(sensors):
-            at_sensors = base.dense(np.moveaxis(tangents.at(base.sensor_points), 0, -1), tangents.times)
-            changes = recorded_change(base.study, base.grid, at_sensors)
-            slopes |= {name: changes[name] for name in sensors if name not in slopes}
-        return slopes

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import functools
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from tyrefem.boundaries.rim import LumpedRim
 from tyrefem.brief import Brief
 from tyrefem.cache import Cache
-from tyrefem.conduction.sensitivity import Perturbed, Tangents, tangents
-from tyrefem.diagnose.forward.fixed_step import FixedStepRun, ReadingSensitivities, fixed_step_run, run_of_tyre
+from tyrefem.diagnose.forward.fixed_step import FixedStepRun, fixed_step_run
+from tyrefem.diagnose.forward.reading_sensitivities import ReadingSensitivities, sensitivities_about
 from tyrefem.diagnose.forward.reduced_drive import Modes, ReducedDrive, modes_of
 from tyrefem.diagnose.forward.sampling import DriveSampling
 from tyrefem.diagnose.forward.source_responses import source_responses
@@ -28,7 +28,6 @@ from tyrefem.inputs.study import StudyData
 from tyrefem.mechanics.nearby_cycles import NearbyCycles, SolvedCycles
 from tyrefem.mechanics.strain_laws import strain_law
 from tyrefem.reduced.model import NotReducibleError
-from tyrefem.simulation.rolling_tyre import RollingTyre
 from tyrefem.simulation.run import run
 from tyrefem.simulation.surroundings import GAS, RIM
 from tyrefem.variants.answer_store import study_digest
@@ -46,51 +45,6 @@ MANY = 16
 LATEST = 8
 #: Simulations at x = 0, by study, drive and readings: all diagnoses of one layout share them.
 _BASES: Cache[FixedStepRun] = Cache(size=12)
-
-
-@dataclass(frozen=True, eq=False)
-class DriveResponse(Brief):
-    """Readings of a study at one drive and their sensitivities to unknowns, on an even grid of times.
-
-    Parameters
-    ----------
-    times : (n,) s. readings : sensor -> (n,) degC at x = 0, by the fixed-step simulation.
-    correction : sensor -> (n,) K, full run minus fixed-step simulation.
-    slopes : sensor -> (n, n_unknowns) d(reading)/dx at x = 0.
-    modes : POD modes of the drive's reduced model, from the same tangents.
-    """
-
-    unknowns: tuple[Unknown, ...]
-    times: Array
-    readings: dict[str, Array]
-    correction: dict[str, Array]
-    slopes: dict[str, Array]
-    modes: Modes
-
-    def of(self, unknowns: tuple[Unknown, ...]) -> DriveResponse:
-        """The response to some of its unknowns, in their order.
-
-        Raises
-        ------
-        InputError : the response lacks one of them.
-        """
-        place = {unknown: column for column, unknown in enumerate(self.unknowns)}
-        absent = [unknown.key for unknown in unknowns if unknown not in place]
-        if absent:
-            raise InputError(
-                f"the given responses belong to another study or to other sensors: {absent[0]} is not there"
-            )
-        columns = [place[unknown] for unknown in unknowns]
-        return replace(self, unknowns=unknowns, slopes={name: each[:, columns] for name, each in self.slopes.items()})
-
-    def blocks(self, drive: DriveSampling) -> tuple[Array, Array, Array]:
-        """Block means of a drive's sensors: fixed-step readings, correction, slopes (n_blocks, n_unknowns)."""
-        parts = [
-            [each.sampled(self.times, values[each.sensor]) for each in drive.sensors]
-            for values in (self.readings, self.correction, self.slopes)
-        ]
-        first, second, third = (np.concatenate(part) for part in parts)
-        return first, second, third
 
 
 @dataclass(frozen=True, eq=False)
@@ -210,7 +164,7 @@ class ForwardModel(Brief):
     def response(self, number: int, unknowns: Sequence[Unknown]) -> tuple[Array, Array, Array, Array]:
         """Times and readings of `base_readings`, slopes stacked by sensor, and modes: see `DriveResponse`."""
         base = self.base(number)
-        varied = self._varied(base, base.study, unknowns, {})
+        varied = self._sensitivities(base, base.study, unknowns, {})
         slopes = varied.slopes(self.sensors)
         stacked = np.array([slopes[sensor] for sensor in self.sensors])
         modes = modes_of(base, varied.of_tangents, varied.tangents, self.settings)
@@ -225,11 +179,21 @@ class ForwardModel(Brief):
         base, here, samplings = self.base(number), self._simulated(number, at), self.drives[number].sensors
         sensors = tuple(each.sensor for each in samplings)
         double = here.tyre.mesh is base.tyre.mesh and len(unknowns) > MANY
-        slopes = self._varied(here, base.study, unknowns, at, double=double).slopes(sensors)
+        slopes = self._sensitivities(here, base.study, unknowns, at, double=double).slopes(sensors)
         if double:
             left_out = self._left_out(base, unknowns, sensors)
             slopes = {sensor: slopes[sensor] + left_out[place] for place, sensor in enumerate(sensors)}
         return np.concatenate([each.sampled(here.grid, slopes[each.sensor]) for each in samplings])
+
+    def _sensitivities(
+        self, here: FixedStepRun, origin: StudyData, unknowns: Sequence[Unknown], at: Values, *, double: bool = False
+    ) -> ReadingSensitivities:
+        """`sensitivities_about` a simulation with unknowns at ``at``; ``origin``: the study at x = 0."""
+
+        def study_of(values: Values) -> StudyData:
+            return self.with_values(origin, values, here.study)
+
+        return sensitivities_about(here, unknowns, at, study_of, double=double)
 
     def _left_out(self, base: FixedStepRun, unknowns: Sequence[Unknown], sensors: tuple[str, ...]) -> Array:
         """(n_sensors, n_grid, n_unknowns): what double steps leave out of the slopes of the readings at x = 0."""
@@ -237,7 +201,7 @@ class ForwardModel(Brief):
         columns: dict[Unknown, Array] = {}
         if new:
             fine, double = (
-                self._varied(base, base.study, new, {}, double=each).slopes(sensors) for each in (False, True)
+                self._sensitivities(base, base.study, new, {}, double=each).slopes(sensors) for each in (False, True)
             )
             off = np.nan_to_num(np.array([fine[sensor] - double[sensor] for sensor in sensors]))
             columns = {unknown: off[:, :, column] for column, unknown in enumerate(new)}
@@ -412,72 +376,7 @@ class ForwardModel(Brief):
     def _reduced_drive(self, number: int, modes: Modes) -> ReducedDrive:
         return self._reduced.get((number, modes.digest), lambda: ReducedDrive(self.base(number), modes, self.settings))
 
-    def _varied(
-        self, base: FixedStepRun, origin: StudyData, unknowns: Sequence[Unknown], at: Values, *, double: bool = False
-    ) -> ReadingSensitivities:
-        """Sensitivities about a solution: tangents if the unknown keeps the mesh, else a second simulation.
-
-        ``double``: tangents in steps twice as long, which takes half the time. Sensitivities of a further effect with
-        which no tyre can be built are NaN, those of an effect in other runs 0.
-        """
-        again: dict[int, FixedStepRun] = {}
-        failed: list[int] = []
-        columns: list[int] = []
-        perturbed: list[Perturbed] = []
-        moved: dict[int, tuple[str, int]] = {}
-        swapped = any(effect.overrides("channel") for effect in base.study.effects)
-        for column, unknown in enumerate(unknowns):
-            if not unknown.acts_in(origin.card.run):
-                continue
-            if not swapped and (move := unknown.moves_sensor) is not None:
-                moved[column] = move
-                continue
-            try:
-                study = self.with_values(origin, {**at, unknown: at.get(unknown, 0.0) + unknown.step}, base.study)
-                if unknown.measures:
-                    again[column] = base.as_measured_by(study)
-                    continue
-                tyre = RollingTyre(study, base.tyre)
-                # The state of an effect adds unknowns that the base solution does not have.
-                if tyre.mesh is base.tyre.mesh and tyre.states is None and base.tyre.states is None:
-                    perturbed.append(Perturbed(tyre.problem, unknown.step, tyre.drive.initial))
-                    columns.append(column)
-                else:
-                    again[column] = run_of_tyre(study, tyre, every=base.every)
-            except InputError:
-                if unknown.effect is None or unknown.origin is not None:
-                    raise
-                failed.append(column)
-        derivatives: Tangents | None = None
-        try:
-            derivatives = _tangents(base, perturbed, double=double)
-        except InputError:
-            alone = {column: each for column, each in zip(columns, perturbed, strict=True) if _possible(base, each)}
-            impossible = [column for column in columns if column not in alone]
-            if any(unknowns[column].effect is None or unknowns[column].origin is not None for column in impossible):
-                raise
-            failed += impossible
-            columns = list(alone)
-            derivatives = _tangents(base, list(alone.values()), double=double)
-        return ReadingSensitivities(base, tuple(unknowns), again, columns, derivatives, failed, moved)
-
 
 def _acting(study: StudyData, values: Values) -> Values:
     """The values of the unknowns that act in the study's run."""
     return {unknown: x for unknown, x in values.items() if unknown.acts_in(study.card.run)}
-
-
-def _tangents(base: FixedStepRun, perturbed: Sequence[Perturbed], *, double: bool = False) -> Tangents | None:
-    if not perturbed:
-        return None
-    solution = base.in_double_steps() if double else (base.times, base.values, base.reservoirs)
-    return tangents(base.tyre.problem, *solution, perturbed)
-
-
-def _possible(base: FixedStepRun, perturbed: Perturbed) -> bool:
-    """Whether the tangents of one changed parameter can be computed."""
-    try:
-        _tangents(base, [perturbed])
-    except InputError:
-        return False
-    return True

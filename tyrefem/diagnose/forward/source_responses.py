@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from tyrefem.cache import Cache, Content
 from tyrefem.conduction.fixed_steps import fixed_step_solution
 from tyrefem.conduction.sensitivity import Perturbed, stage_times, tangents_over_time
-from tyrefem.diagnose.forward.fixed_step import FixedStepRun, ReadingSensitivities
+from tyrefem.diagnose.forward.fixed_step import FixedStepRun
+from tyrefem.diagnose.forward.reading_sensitivities import ReadingSensitivities
 from tyrefem.diagnose.forward.sampling import DriveSampling
 from tyrefem.diagnose.unknowns.unknown import Unknown, with_values
 from tyrefem.simulation.rolling_tyre import RollingTyre

@@ -15,9 +15,10 @@ from numpy.typing import NDArray
 
 from tyrefem.compare.sensors import OUTSIDE_THE_RUBBER
 from tyrefem.diagnose.data.sensitivities import Sensitivities, responses, sensitivities, unknowns_of
+from tyrefem.diagnose.forward.drive_response import DriveResponse
 from tyrefem.diagnose.forward.effort import SENSITIVITIES, check_effort
 from tyrefem.diagnose.forward.evaluations import Evaluations, ProgressStore, evaluating
-from tyrefem.diagnose.forward.forward_model import DriveResponse, ForwardModel
+from tyrefem.diagnose.forward.forward_model import ForwardModel
 from tyrefem.diagnose.forward.sampling import DriveSampling, SensorSampling
 from tyrefem.diagnose.inference.linear_model import DesignMatrix, LinearModel
 from tyrefem.diagnose.inference.set_evidences import SetEvidences
