@@ -63,14 +63,16 @@ def missing_heat(residuals: Residuals, unknown: Sequence[Unknown], about: Fitted
 
     Every patch has a part that all runs share, and a part for each run with half the standard deviation. The model is
     linear about x = 0 or about the fit ``about`` without patches; the one with the larger evidence counts. A fit
-    without the missing heat may have distorted base numbers. See `missing_heat_fitted`.
+    without the missing heat may have distorted base numbers. About a fit with effects it is linear about this fit: at
+    x = 0 their heat would count as missing. See `missing_heat_fitted`.
     """
     nuisance = residuals.unknowns[: residuals.nuisance]
     origin = residuals.linear(residuals.fitted)
     patch = origin.jacobian[:, origin.design.columns(unknown)]
     here = _Point(nuisance, origin.data, origin.jacobian[:, : residuals.nuisance], patch)
     there = _Point(about.unknowns, about.linear.data, about.linear.jacobian, patch)
-    return max((_estimated(residuals, unknown, point) for point in (here, there)), key=lambda heat: heat.log_evidence)
+    points = (there,) if about.members else (here, there)
+    return max((_estimated(residuals, unknown, point) for point in points), key=lambda heat: heat.log_evidence)
 
 
 def missing_heat_fitted(

@@ -76,27 +76,27 @@ class HeatOverTime(Brief):
 
 
 def heat_over_time(
-    residuals: Residuals, evaluations: Evaluations, null: FittedSet, tick: Callable[[], None] | None = None
+    residuals: Residuals, evaluations: Evaluations, about: FittedSet, tick: Callable[[], None] | None = None
 ) -> HeatOverTime:
-    """Estimate the sources in the linear model about x = 0 or about the fit of no effect, whichever explains more.
+    """Estimate the sources in the linear model about the fit of no effect or about x = 0, whichever explains more.
+
+    Beside effects only the model about their fit counts: about x = 0 there are none, and the sources would be theirs.
 
     1. Every place of a few coarse knots in time is tried: heat in all layers, and flux through the outer surface, the
        inner surface and from the rim. The best are added one by one.
     2. At the station of each source, single layers compete too.
     3. Each source gets fine knots; the courses of `heat_courses` compete by evidence.
     """
-    origin = residuals.linear(residuals.fitted)
-    n = residuals.nuisance
-    of_null = np.array([unknown.sd for unknown in null.unknowns])
-    points = (
-        ProjectedData(origin.data, origin.jacobian[:, :n], origin.design.sd[:n]),
-        ProjectedData(null.linear.data, null.linear.jacobian, of_null),
-    )
-    responses = _Responses(residuals, evaluations, tick)
-    nuisance = residuals.unknowns[:n], null.unknowns
-    estimates = [
-        _estimated(residuals, responses, data, unknowns) for data, unknowns in zip(points, nuisance, strict=True)
+    of_fit = np.array([unknown.sd for unknown in about.unknowns])
+    points: list[tuple[ProjectedData, Sequence[Unknown]]] = [
+        (ProjectedData(about.linear.data, about.linear.jacobian, of_fit), about.unknowns)
     ]
+    if not about.members:
+        origin, n = residuals.linear(residuals.fitted), residuals.nuisance
+        at_zero = ProjectedData(origin.data, origin.jacobian[:, :n], origin.design.sd[:n])
+        points.insert(0, (at_zero, residuals.unknowns[:n]))
+    responses = _Responses(residuals, evaluations, tick)
+    estimates = [_estimated(residuals, responses, data, unknowns) for data, unknowns in points]
     return max(estimates, key=lambda heat: heat.log_evidence)
 
 
