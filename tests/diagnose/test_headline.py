@@ -9,6 +9,8 @@ import subprocess
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -20,10 +22,12 @@ from tyrefem.api.diagnosis import Diagnosis
 from tyrefem.api.diagnosis_record import DiagnosisRecord
 from tyrefem.diagnose import DiagnosisData
 from tyrefem.diagnose.amend import Change
-from tyrefem.diagnose.beside.discrepancy import ENERGY, NONE
+from tyrefem.diagnose.beside.discrepancy import ENERGY, HEAT, NONE
 from tyrefem.diagnose.beside.robustness import Robustness, UnderDiscrepancy
 from tyrefem.diagnose.fitting.support import LeftOut, Support
+from tyrefem.diagnose.heat.sources import UnknownSource
 from tyrefem.diagnose.numbers import percent
+from tyrefem.diagnose.unknowns.heat_patches import OUTER
 from tyrefem.diagnose.unknowns.unknown import Unknown
 from tyrefem.diagnose.verdicts.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, PARTLY, UNEXPLAINED, certain_members
 from tyrefem.diagnose.words.headline import QUESTIONS, corrections, headline, label
@@ -183,6 +187,26 @@ def test_a_part_of_the_cause_has_its_range_and_what_is_beside_it(case: Case) -> 
     assert "besides it the data speak for another strain energy along the meridian" in wrong
     assert "with all readings at least 97 %, whatever else is wrong" in sure
     assert "Check that you believe the range" in step
+
+
+def test_heat_beside_a_part_of_the_cause_is_one_clause(case: Case) -> None:
+    d = partly(case.diagnosis)
+    assert d.robustness is not None
+    models = (replace(d.robustness.models[0], name=HEAT, words="heat of unknown origin"), d.robustness.models[1])
+    sources = tuple(
+        UnknownSource(
+            station, OUTER, False, -435.0, 11.0, {station: 1.0}, {OUTER: 1.0}, "constant", {"constant": 1.0},
+            math.nan, math.nan, (), (), 500.0,
+        )
+        for station in (0.095, 0.053, 0.137)
+    )  # fmt: skip
+    over_time: Any = SimpleNamespace(clear=sources, cools=True)
+    d = replace(d, robustness=Robustness(models), missing=replace(d.missing, over_time=over_time))
+    wrong = headline(d)[0]
+    assert wrong.endswith(
+        "besides it the model has too much heat, cooling is missing, at the outer surface, in mid sidewall (s = 95 mm "
+        "along the meridian): -435 ± 11 W/m²; it is constant in time; and 2 more places."
+    )
 
 
 def supported(d: DiagnosisData, *left: LeftOut, only_at: str = "") -> DiagnosisData:

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,8 +17,10 @@ from tyrefem.diagnose.beside.discrepancy import ENERGY, READINGS
 from tyrefem.diagnose.beside.robustness import Robustness, UnderDiscrepancy
 from tyrefem.diagnose.blind.blind_case import outcome_row
 from tyrefem.diagnose.fitting.fits import FittedSet
+from tyrefem.diagnose.heat.sources import UnknownSource
 from tyrefem.diagnose.inference.evidence import Posterior
 from tyrefem.diagnose.unknowns.energy_shapes import energy_shapes
+from tyrefem.diagnose.unknowns.heat_patches import ALL_LAYERS
 from tyrefem.diagnose.words.discrepancy_record import possible_effects
 from tyrefem.diagnose.words.headline import headline
 from tyrefem.diagnose.words.partly import MOST, explaining_words
@@ -74,3 +79,32 @@ def test_effects_that_may_act_beside_a_discrepancy_are_in_the_set(case: Case) ->
     assert record(d)["possible_effects"] == {"hot-road": pytest.approx(0.4)}
     assert "hot-road" in outcome_row(d)["set"]
     assert outcome_row(d)["named"] == []
+
+
+def with_source(d: DiagnosisData, lead: float) -> DiagnosisData:
+    """As if heat began late in the sidewall, with this lead over the most probable discrepancy model, nats."""
+    assert d.robustness is not None
+    source = UnknownSource(
+        0.095, ALL_LAYERS, True, 1.2e5, 3e3, {0.095: 1.0}, {ALL_LAYERS: 1.0}, "begins", {"begins": 1.0}, 336.0, 14.0,
+        (), (), 500.0,
+    )  # fmt: skip
+    over_time: Any = SimpleNamespace(clear=(source,), cools=True)
+    evidence = d.robustness.log_evidence + math.log(d.robustness.models[0].probability) + lead
+    return replace(d, missing=replace(d.missing, over_time=over_time, log_evidence=evidence))
+
+
+@pytest.mark.parametrize(("lead", "heat"), [(20.0, True), (-20.0, False)])
+def test_errors_of_the_readings_are_told_only_where_heat_explains_less(case: Case, lead: float, heat: bool) -> None:
+    d = with_models(case.diagnosis, left=0.2, leading_p=0.5)
+    assert d.robustness is not None
+    d = with_source(replace(d, robustness=replace(d.robustness, log_evidence=-500.0)), lead)
+    first, words = headline(d)[0], " ".join(verdict_words(d))
+    assert ("heat is missing in mid sidewall" in first) is heat
+    assert ("errors of the readings would explain it" in first) is not heat
+    assert ("Errors of the readings would explain it." in words) is not heat
+    may = (
+        "Beside errors of the readings these effects may act"
+        if heat
+        else "If that holds, these effects may act beside it"
+    )
+    assert f"{may}: hot-road (40 %)." in words

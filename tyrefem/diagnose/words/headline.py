@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from tyrefem.brief import Brief
 from tyrefem.compare.omitted import ERROR
-from tyrefem.diagnose.beside.discrepancy import ENERGY
+from tyrefem.diagnose.beside.discrepancy import ENERGY, HEAT
 from tyrefem.diagnose.fitting.materiality import Movement, largest_change
 from tyrefem.diagnose.fitting.pulls import Pull, improbable_pulls
 from tyrefem.diagnose.heat.sources import STATED, UnknownSource
@@ -179,7 +179,10 @@ def _confounded(d: DiagnosisData) -> tuple[str, str, str]:
 
 def _partly(d: DiagnosisData) -> tuple[str, str, str]:
     clauses = _joined([part_clause(d, member) for member in d.best.members])
-    wrong = f"This is a part of it: {clauses.rstrip('.')}; {besides_words(d)}."
+    sources = () if d.missing.over_time is None else d.missing.over_time.clear
+    in_heat = d.robustness is not None and d.robustness.models[0].name == HEAT and sources
+    besides_it = f"besides it {heat_clause(d, sources)}" if in_heat else besides_words(d)
+    wrong = f"This is a part of it: {clauses.rstrip('.')}; {besides_it}."
     stated = stated_words(d, d.best.members, least_probable(d), least_words(d))
     sure = f"{stated}, whatever else is wrong; {_closed(d)}."
     strained = improbable_pulls("the amended study", d.best, d.gap.settings)

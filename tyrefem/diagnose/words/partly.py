@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.diagnose.beside.discrepancy import ENERGY, HEAT, NONE
+from tyrefem.diagnose.beside.discrepancy import ENERGY, HEAT, NONE, READINGS
 from tyrefem.diagnose.beside.robustness import LEAST_P
 from tyrefem.diagnose.data.residual_tables import rms
 from tyrefem.diagnose.numbers import amount, at_least, extent, parameter_name, percent
@@ -91,10 +91,12 @@ def besides_words(d: DiagnosisData) -> str:
 def explaining_words(d: DiagnosisData) -> str:
     """The discrepancy that explains the deviation without a named effect, as a sentence; empty if none does.
 
-    Another strain energy is also told if it explains most of the deviation, but noise does not explain the rest.
+    Another strain energy is also told if it explains most of the deviation, but noise does not explain the rest. Errors
+    of the readings are not told where heat of unknown origin explains the data better: they fit any smooth deviation,
+    and the heat has a place.
     """
     leading = d.robustness.models[0] if d.robustness else None
-    if leading is None:
+    if leading is None or _heat_before_errors(d):
         return ""
     if leading.name == NONE or leading.p_value < LEAST_P:
         return _energy_explains(d)
@@ -102,6 +104,14 @@ def explaining_words(d: DiagnosisData) -> str:
     shares = energy_words(d, fit) if leading.name == ENERGY and fit is not None else ""
     words = f"{leading.words[0].upper()}{leading.words[1:]}"
     return f"{words} would explain it{f': {shares}' if shares else ''}."
+
+
+def _heat_before_errors(d: DiagnosisData) -> bool:
+    """Whether errors of the readings are the most probable model, and clear heat has a larger evidence than they."""
+    robust, heat = d.robustness, d.missing.over_time
+    if robust is None or heat is None or not heat.clear or robust.models[0].name != READINGS:
+        return False
+    return d.missing.log_evidence > robust.log_evidence + math.log(max(robust.models[0].probability, 1e-300))
 
 
 def _energy_explains(d: DiagnosisData) -> str:
@@ -143,12 +153,13 @@ def beyond_noise(rms_of_all: float, noise: float) -> float:
 
 def beside_it_words(d: DiagnosisData) -> str:
     """Effects that may act beside the discrepancy that explains the deviation, as a sentence; empty if none may."""
-    shown = [f"{key} ({percent(share)})" for key, share in possible_effects(d).items()]
-    return (
-        f"If that holds, these effects may act beside it: {', '.join(shown)}. It is not sure, so none is named."
-        if shown
-        else ""
-    )
+    shown = ", ".join(f"{key} ({percent(share)})" for key, share in possible_effects(d).items())
+    if not shown:
+        return ""
+    may = f"If that holds, these effects may act beside it: {shown}"
+    if _heat_before_errors(d) and d.robustness is not None:
+        may = f"Beside {d.robustness.models[0].words} these effects may act: {shown}"
+    return f"{may}. It is not sure, so none is named."
 
 
 def energy_words(d: DiagnosisData, fit: FittedSet) -> str:
