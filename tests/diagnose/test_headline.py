@@ -189,6 +189,18 @@ def test_a_part_of_the_cause_has_its_range_and_what_is_beside_it(case: Case) -> 
     assert "Check that you believe the range" in step
 
 
+def test_an_effect_that_is_likely_beside_a_part_of_the_cause_is_told(case: Case) -> None:
+    d = partly(case.diagnosis)
+    assert d.robustness is not None
+    first, *others = d.robustness.models
+    fit = replace(d.null, misfit=float(d.null.readings))
+    first = replace(first, named={**first.named, "sun": 0.94, "sensor-offset": 0.2}, fits={(): fit})
+    d = replace(d, robustness=Robustness((first, *others)))
+    assert headline(d)[0].endswith("Perhaps also: sun (94 %).")
+    sentence = "Perhaps these act, too: sun (94 %), sensor-offset (20 %). They are not sure enough to be named."
+    assert sentence in verdict_words(d)
+
+
 def test_heat_beside_a_part_of_the_cause_is_one_clause(case: Case) -> None:
     d = partly(case.diagnosis)
     assert d.robustness is not None

@@ -183,6 +183,8 @@ def _partly(d: DiagnosisData) -> tuple[str, str, str]:
     in_heat = d.robustness is not None and d.robustness.models[0].name == HEAT and sources
     besides_it = f"besides it {heat_clause(d, sources)}" if in_heat else besides_words(d)
     wrong = f"This is a part of it: {clauses.rstrip('.')}; {besides_it}."
+    likely = _likely(d)
+    wrong += f" Perhaps also: {likely}." if likely else ""
     stated = stated_words(d, d.best.members, least_probable(d), least_words(d))
     sure = f"{stated}, whatever else is wrong; {_closed(d)}."
     strained = improbable_pulls("the amended study", d.best, d.gap.settings)
@@ -206,8 +208,8 @@ def _unexplained(d: DiagnosisData) -> tuple[str, str, str]:
     other = explaining_words(d)
     cause = f"{other[0].lower()}{other[1:].rstrip('.')}" if other else heat_clause(d, sources)
     wrong = f"No effect in the catalogue explains the deviation; {cause}."
-    likely = [f"{key} ({percent(share)})" for key, share in possible_effects(d).items() if share >= LIKELY]
-    wrong += f" Beside it may act: {', '.join(likely)}." if likely else ""
+    likely = _likely(d)
+    wrong += f" Beside it may act: {likely}." if likely else ""
     if d.judgement.doubts:
         sure = f"{_opened(d.judgement.doubts[0])}; {_gap(d)}."
     else:
@@ -221,6 +223,11 @@ def _unexplained(d: DiagnosisData) -> tuple[str, str, str]:
         f"its place, its channel and the drive; if they are right, {rest}."
     )
     return wrong, sure, step
+
+
+def _likely(d: DiagnosisData) -> str:
+    """Effects that are more likely than not beside what else is wrong, but are not named; empty without any."""
+    return ", ".join(f"{key} ({percent(share)})" for key, share in possible_effects(d).items() if share >= LIKELY)
 
 
 def _no_gap(d: DiagnosisData) -> tuple[str, str, str]:

@@ -13,6 +13,7 @@ from tyrefem.diagnose.beside.robustness import LEAST_P
 from tyrefem.diagnose.data.residual_tables import rms
 from tyrefem.diagnose.numbers import amount, at_least, extent, parameter_name, percent
 from tyrefem.diagnose.unknowns.energy_shapes import SHAPE, courses
+from tyrefem.diagnose.verdicts.verdict import PARTLY
 from tyrefem.diagnose.words.discrepancy_record import possible_effects
 from tyrefem.diagnose.words.heat import NOT_CLEAR, heat_words, station_words
 
@@ -152,10 +153,12 @@ def beyond_noise(rms_of_all: float, noise: float) -> float:
 
 
 def beside_it_words(d: DiagnosisData) -> str:
-    """Effects that may act beside the discrepancy that explains the deviation, as a sentence; empty if none may."""
+    """Effects that may act beside what explains the deviation, or beside named effects, as a sentence; else empty."""
     shown = ", ".join(f"{key} ({percent(share)})" for key, share in possible_effects(d).items())
     if not shown:
         return ""
+    if d.verdict == PARTLY:
+        return f"Perhaps these act, too: {shown}. They are not sure enough to be named."
     may = f"If that holds, these effects may act beside it: {shown}"
     if _heat_before_errors(d) and d.robustness is not None:
         may = f"Beside {d.robustness.models[0].words} these effects may act: {shown}"

@@ -156,6 +156,7 @@ def _partly(d: DiagnosisData, closing: str) -> tuple[str, ...]:
         f"{'. And: '.join(part_words(d, member) for member in d.best.members)}: this is part of the cause, "
         f"whatever else is wrong ({least_words(d)} probable).",
         f"{besides[0].upper()}{besides[1:]}.",
+        *([perhaps] if (perhaps := beside_it_words(d)) else []),
         f"Tried beside it: {tried_words(d)}.",
         *support_words(d),
         *missing_heat_words(d),
