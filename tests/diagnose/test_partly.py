@@ -61,6 +61,7 @@ def test_words_and_record_tell_what_else_is_wrong(hidden: tuple[DiagnosisData, P
     record = json.loads((folder / "verdict.json").read_text(encoding="utf-8"))
     assert record["verdict"] == "partly identified"
     assert [effect["name"] for effect in record["effects"]] == ["hot-road"]
+    assert json.loads((folder / "posterior.json").read_text(encoding="utf-8"))["part"] == ["hot-road"]
     names = [row["name"] for row in record["discrepancies"]]
     assert names[0] == "strain energy"
     assert {"none", "missing heat", "strain law barrel", "strain law fem"} <= set(names)

@@ -21,8 +21,9 @@ from tyrefem.diagnose.forward.forward_model import ForwardModel
 from tyrefem.diagnose.forward.sampling import DriveSampling
 from tyrefem.diagnose.unknowns.candidates import catalogue_candidates
 from tyrefem.effects import catalogue
+from tyrefem.plan.beliefs import stored_beliefs
 from tyrefem.plan.drives import candidate_drives
-from tyrefem.plan.words import last_words
+from tyrefem.plan.words import first_words, last_words
 from tyrefem.plan.workflow import rival_of
 from tyrefem.reports.plan import FILES, page
 
@@ -220,3 +221,20 @@ def test_a_plan_that_ends_before_its_last_run_asks_for_wider_limits() -> None:
     plan.runs_left = 18
     assert "No further run within the limits is expected to tell more" in last_words(plan)[-1]
     assert "runs_most" not in last_words(plan)[-1]
+
+
+def test_a_cause_outside_the_catalogue_alone_says_which_runs_tell_its_law(owner: Path, diagnosed: Path) -> None:
+    """No sets are left to compare, but "no experiment can tell more" would be wrong."""
+    copy = owner / "partly"
+    copy.mkdir()
+    record = json.loads((diagnosed / "posterior.json").read_text(encoding="utf-8"))
+    assert record["part"] == []
+    record |= {"verdict": "partly identified", "part": ["hot-road"]}
+    record["sets"] = [record["sets"][0] | {"outside": True, "effects": []}]
+    (copy / "posterior.json").write_text(json.dumps(record), encoding="utf-8")
+    beliefs = stored_beliefs(tf.study(owner), copy)
+    plan: Any = SimpleNamespace(beliefs=beliefs, steps=(), doubt=0.0, runs_left=3)
+    first = "After the verdict 'partly identified', beside hot-road these sets are left: not in the catalogue"
+    assert first_words(plan).startswith(first)
+    (last,) = last_words(plan)
+    assert "Runs at another speed, load or pressure tell its law" in last

@@ -25,6 +25,7 @@ from tyrefem.diagnose.words.set_posteriors import (
     POSTERIOR,
     SetPosterior,
     noise_by_sensor,
+    part_of_cause,
     read_posteriors,
     set_posteriors,
     tables,
@@ -50,7 +51,7 @@ class Beliefs(Brief):
     study : the study that the data were compared with, by the strain law of the diagnosis.
     sets : with probabilities that sum to 1, most probable first.
     noise : installed sensor -> noise of a reading, K. runs : names of the measured runs.
-    verdict : of the earlier diagnosis; empty before a test.
+    verdict : of the earlier diagnosis; empty before a test. part : effects that are "partly identified".
     """
 
     study: StudyData
@@ -58,6 +59,7 @@ class Beliefs(Brief):
     noise: dict[str, float]
     runs: tuple[str, ...] = ()
     verdict: str = ""
+    part: tuple[str, ...] = ()
 
     @property
     def probabilities(self) -> Array:
@@ -125,8 +127,8 @@ def diagnosed_beliefs(diagnosis: DiagnosisData) -> Beliefs:
     """After a verdict: the sets that the latest look leaves; of the look before it, if that found no gap."""
     looks = [look for look in diagnosis.looks if look.verdict != NO_GAP] or [diagnosis]
     d = looks[-1]
-    runs = tuple(run.name for run in d.gap.runs)
-    return Beliefs(d.gap.study, _normalised(set_posteriors(d)), noise_by_sensor(d), runs, d.verdict)
+    runs, part = tuple(run.name for run in d.gap.runs), tuple(part_of_cause(d))
+    return Beliefs(d.gap.study, _normalised(set_posteriors(d)), noise_by_sensor(d), runs, d.verdict, part)
 
 
 def _check_tables(study: StudyData, diagnosed: Mapping[str, Any]) -> None:
@@ -162,6 +164,7 @@ def stored_beliefs(study: StudyData, folder: Path) -> Beliefs:
         sets = read_posteriors(record, study, DiagnosisSettings())
         noise = {str(name): float(value) for name, value in record["noise_K"].items()}
         runs, verdict = tuple(map(str, record["runs"])), str(record["verdict"])
+        part = tuple(map(str, record.get("part", ())))
         if folder == first:
             _check_tables(stated, record["tables"])
         absent = [name for name in noise if name not in (*study.sensors, *OUTSIDE_THE_RUBBER)]
@@ -171,4 +174,4 @@ def stored_beliefs(study: StudyData, folder: Path) -> Beliefs:
         raise error.within(file=file) from None
     except (KeyError, TypeError, ValueError, AttributeError):
         raise InputError("is damaged: diagnose again", file=file) from None
-    return Beliefs(study, _normalised(sets), noise, runs, verdict)
+    return Beliefs(study, _normalised(sets), noise, runs, verdict, part)

@@ -13,6 +13,12 @@ if TYPE_CHECKING:
 
 #: Largest number of sets in the first sentence.
 SHOWN = 4
+#: What to do where only a cause outside the catalogue is left: a plan compares sets of effects.
+OUTSIDE = (
+    "A plan compares sets of effects, and only a cause outside the catalogue is left. The diagnosis says where and "
+    "when its heat is missing. Runs at another speed, load or pressure tell its law, a run that cools at rest tells heat "
+    "inside from a flux. Judge the cause as an effect (tyrefem diagnose STUDY --effects FOLDER), then plan again."
+)
 
 
 def plan_words(plan: PlanData) -> list[str]:
@@ -33,7 +39,8 @@ def first_words(plan: PlanData) -> str:
     rest = sets[SHOWN:]
     together = percent(sum(entry.probability for entry in rest))
     more = f", and {len(rest)} more ({together}{' together' if len(rest) > 1 else ''})" if rest else ""
-    return f"After the verdict '{plan.beliefs.verdict}' these sets are left: {shown}{more}."
+    beside = f", beside {' + '.join(plan.beliefs.part)}" if plan.beliefs.part else ""
+    return f"After the verdict '{plan.beliefs.verdict}'{beside} these sets are left: {shown}{more}."
 
 
 def step_words(step: PlanStep, *, pair: bool = True) -> str:
@@ -72,6 +79,8 @@ def drive_words(drive: CandidateDrive) -> str:
 
 def last_words(plan: PlanData) -> list[str]:
     """Why the plan ends."""
+    if len(plan.beliefs.sets) < 2 and plan.beliefs.sets[0].outside:
+        return [OUTSIDE]
     if len(plan.beliefs.sets) < 2:
         return ["One set is left, so no experiment can tell more."]
     if not plan.steps:

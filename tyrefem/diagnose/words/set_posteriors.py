@@ -16,6 +16,7 @@ from tyrefem.diagnose.unknowns.candidates import Members, catalogue_candidates, 
 from tyrefem.diagnose.unknowns.computed_wave import WithWave, recorded_wave, stored_wave
 from tyrefem.diagnose.unknowns.heat_patches import patches
 from tyrefem.diagnose.unknowns.unknown import Unknown, base_unknowns, sensor_unknowns
+from tyrefem.diagnose.verdicts.verdict import PARTLY
 from tyrefem.errors import InputError
 from tyrefem.output import jsonable
 
@@ -120,16 +121,23 @@ def tables(study: StudyData) -> dict[str, Any]:
     return plain
 
 
+def part_of_cause(d: DiagnosisData) -> list[str]:
+    """Keys of the effects that act whatever else is wrong, if the verdict is "partly identified"; else empty."""
+    return [member.key for member in d.best.members] if d.verdict == PARTLY else []
+
+
 def posterior_record(d: DiagnosisData) -> dict[str, Any]:
     """Contents of ``posterior.json``: sets with the posteriors of their unknowns, noise of sensors, names of runs.
 
-    ``strain_law``: name and level of the strain law in place of the study's, null if this stands; see `by_law`.
+    ``part``: see `part_of_cause`. ``strain_law``: name and level of the strain law in place of the study's, null if
+    this stands; see `by_law`.
     ``standing_wave``: computed numbers of the effect, null if those of the catalogue were taken.
     """
     better = d.better_law
     return {
         "study": d.original.name,
         "verdict": d.verdict,
+        "part": part_of_cause(d),
         "tables": tables(d.original),
         "strain_law": None if better is None else {"name": better.trial.law, "level": better.trial.level},
         "standing_wave": recorded_wave(d.candidates),
