@@ -16,8 +16,8 @@ SHOWN = 4
 #: What to do where only a cause outside the catalogue is left: a plan compares sets of effects.
 OUTSIDE = (
     "A plan compares sets of effects, and only a cause outside the catalogue is left. The diagnosis says where and "
-    "when its heat is missing. Runs at another speed, load or pressure tell its law, a run that cools at rest tells heat "
-    "inside from a flux. Judge the cause as an effect (tyrefem diagnose STUDY --effects FOLDER), then plan again."
+    "when its heat is missing. Runs at another speed, load or pressure tell its law; a run that cools at rest tells "
+    "heat inside from a flux. Judge the cause as an effect (tyrefem diagnose STUDY --effects FOLDER), then plan again."
 )
 
 
