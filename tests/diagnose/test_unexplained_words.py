@@ -108,3 +108,26 @@ def test_errors_of_the_readings_are_told_only_where_heat_explains_less(case: Cas
         else "If that holds, these effects may act beside it"
     )
     assert f"{may}: hot-road (40 %)." in words
+
+
+@pytest.mark.parametrize(
+    ("lead", "may"), [(20.0, "Beside errors of the readings may act"), (-20.0, "If that holds, beside it may act")]
+)
+def test_a_likely_effect_is_told_with_what_it_acts_beside(case: Case, lead: float, may: str) -> None:
+    d = with_models(case.diagnosis, left=0.2, leading_p=0.5)
+    assert d.robustness is not None
+    first, *others = d.robustness.models
+    models = (replace(first, named={"hot-road": 0.6}), *others)
+    d = with_source(replace(d, robustness=replace(d.robustness, models=models, log_evidence=-500.0)), lead)
+    assert headline(d)[0].endswith(f"{may}: hot-road (60 %).")
+
+
+def test_contained_air_has_no_place_to_check(case: Case) -> None:
+    d = unexplained(case.diagnosis, 1e3)
+    assert "its place, its channel and the drive" in headline(d)[2]
+    of_air = replace(d)
+    of_air.__dict__["where"] = d.where.assign(sensor="contained-air")
+    assert "Check contained-air in run" in headline(of_air)[2]
+    assert "its channel and the drive" in headline(of_air)[2]
+    assert "its place" not in headline(of_air)[2]
+    assert "its channel, the run's drive, and the stated uncertainties" in " ".join(verdict_words(of_air))

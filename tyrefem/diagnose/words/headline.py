@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from tyrefem.brief import Brief
 from tyrefem.compare.omitted import ERROR
+from tyrefem.compare.sensors import OUTSIDE_THE_RUBBER
 from tyrefem.diagnose.beside.discrepancy import ENERGY, HEAT
 from tyrefem.diagnose.fitting.materiality import Movement, largest_change
 from tyrefem.diagnose.fitting.pulls import Pull, improbable_pulls
@@ -209,7 +210,10 @@ def _unexplained(d: DiagnosisData) -> tuple[str, str, str]:
     cause = f"{other[0].lower()}{other[1:].rstrip('.')}" if other else heat_clause(d, sources)
     wrong = f"No effect in the catalogue explains the deviation; {cause}."
     likely = _likely(d)
-    wrong += f" Beside it may act: {likely}." if likely else ""
+    if likely and other:
+        wrong += f" If that holds, beside it may act: {likely}."
+    elif likely and d.robustness is not None:
+        wrong += f" Beside {d.robustness.models[0].words} may act: {likely}."
     if d.judgement.doubts:
         sure = f"{_opened(d.judgement.doubts[0])}; {_gap(d)}."
     else:
@@ -220,7 +224,8 @@ def _unexplained(d: DiagnosisData) -> tuple[str, str, str]:
     place = f"{row['sensor']} in {run_words(str(row['run']))}"
     step = (
         f"Check {place} first, where measured - computed is {row['mean_K']:+z.1f} K {phase_words(str(row['phase']))}: "
-        f"its place, its channel and the drive; if they are right, {rest}."
+        f"{'' if row['sensor'] in OUTSIDE_THE_RUBBER else 'its place, '}its channel and the drive; if they are right, "
+        f"{rest}."
     )
     return wrong, sure, step
 

@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from tyrefem.compare.sensors import OUTSIDE_THE_RUBBER
 from tyrefem.diagnose.beside.discrepancy import NONE
 from tyrefem.diagnose.fitting.pulls import pulls
 from tyrefem.diagnose.numbers import amount, correction_words, parameter_name, percent, run_words
@@ -171,8 +172,9 @@ def _next_step(d: DiagnosisData) -> tuple[str, ...]:
     row = clearest(d)
     return (
         f"Next: check {row['sensor']} in {run_words(str(row['run']))}, where the deviation is clearest "
-        f"({row['mean_K']:+z.1f} K on average {phase_words(str(row['phase']))}): its place and channel, the run's "
-        "drive, and the stated uncertainties.",
+        f"({row['mean_K']:+z.1f} K on average {phase_words(str(row['phase']))}): its "
+        f"{'' if row['sensor'] in OUTSIDE_THE_RUBBER else 'place and '}channel, the run's drive, and the stated "
+        "uncertainties.",
         "A cause outside the catalogue can be written as an effect (docs/effects.md) and diagnosed again.",
         *draft_words(d),
     )
