@@ -158,3 +158,39 @@ def test_runs_that_cannot_be_are_refused() -> None:
     cold = {**run, "plateau": dict.fromkeys(run["plateau"], "5 degC")}
     with pytest.raises(InputError, match=r"runs\.0\.plateau\.tyre: 5 degC is colder than all surroundings"):
         ThermalCard.check({**BODY, "runs": [cold]})
+
+
+def test_a_wrong_time_makes_every_number_doubtful() -> None:
+    """500 s typed as 5000 s: no tyre of these bodies has it; the answer names the reading and its run."""
+    wrong = identify(shipped({"runs": {"0": {"warm_up": {"tread": "5000 s"}}}}))
+    assert {number.verdict for number in wrong.numbers} == {"doubtful"}
+    (words,) = wrong.words
+    assert "run '60 km/h', warm_up of tread, measured 5000" in words
+    assert identify(shipped()).words == ()
+
+
+def test_a_film_that_is_not_there_comes_out_as_nothing_with_its_deviation() -> None:
+    """(G_0 + G_1 v) (T - T_a) = F v with G_0 = 0, and noise that asks for less: sd as of a straight line."""
+    speeds, runs = np.array([10.0, 20.0, 40.0]), []
+    for speed, plateau in zip(speeds, ("122 degC", "120 degC", "118 degC"), strict=True):
+        run = {"name": f"{speed:g}", "speed": f"{speed} m/s", "rolling_resistance": "50 N", "air": "20 degC"}
+        runs.append(run | {"plateau": {"tyre": plateau}})
+    films = [{"between": ["tyre", "air"], "speed": "linear"}]
+    identified = identify(ThermalCard.check(BODY | {"films": films, "runs": runs, "heat_sd": 0.0}))
+    at_rest, per_speed = identified.numbers
+    # A degree of the plateau changes F v/(T - T_a) = 0.5 v by one part in a hundred of it.
+    weighted = np.column_stack([np.ones(3), speeds]) / (0.005 * speeds[:, None])
+    sd = np.sqrt(np.diag(np.linalg.inv(weighted.T @ weighted)))
+    assert (at_rest.value, at_rest.verdict) == (0.0, "poorly determined")
+    assert at_rest.sd == pytest.approx(sd[0], rel=0.01)
+    assert per_speed.value == pytest.approx(0.5, rel=0.01)
+    assert per_speed.sd == pytest.approx(sd[1], rel=0.01)
+    assert "0 fits best" in identified.words[0]
+
+
+def test_readings_that_no_tyre_has_are_refused_with_the_worst() -> None:
+    """The gas hotter than all that heats it, in every run."""
+    with pytest.raises(
+        InputError, match=r"cannot have what was measured; worst: run '.*', plateau of gas, measured 95"
+    ):
+        identify(shipped({"runs": {str(n): {"plateau": {"gas": "95 degC"}} for n in range(5)}}))

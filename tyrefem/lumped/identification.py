@@ -22,13 +22,20 @@ DETERMINED = 1e-6
 NAMED = 0.1
 #: Relative step of the heat in central differences.
 HEAT_STEP = 1e-4
+#: Smallest number, relative to its first guess; a number that ends below `ZERO` is reported as 0.
+LOWEST, ZERO = 1e-6, 1e-4
+#: Probability of a larger misfit by chance below which every number is doubtful.
+CHANCE = 1e-3
+#: Standard deviation, in sizes of the number, above which a number is not determined.
+VAGUE = 30.0
 
 
 @dataclass(frozen=True)
 class LumpedNumber:
     """An identified number, SI: ``value`` and standard deviation ``sd``.
 
-    ``area``: of its film, m2, if the card has it: value / area is the film coefficient.
+    ``area``: of its film, m2, if the card has it: value / area is the film coefficient. ``doubtful``: the bodies cannot
+    have what was measured.
     """
 
     name: str
@@ -36,10 +43,13 @@ class LumpedNumber:
     value: float
     sd: float
     area: float | None = None
+    doubtful: bool = False
 
     @property
     def verdict(self) -> str:
-        """``determined`` to a third or better, else ``poorly determined``."""
+        """``doubtful``; else ``determined`` to a third or better, or ``poorly determined``."""
+        if self.doubtful:
+            return "doubtful"
         return "determined" if self.sd < self.value / 3 else "poorly determined"
 
     def to_dict(self) -> dict[str, Any]:
@@ -81,19 +91,24 @@ class LumpedIdentification(Brief):
     @cached_property
     def rows(self) -> list[dict[str, Any]]:
         """Every measured number beside the computed one: run, body, quantity, unit, measured, computed, sd."""
-        rows = []
-        for label, measured, computed, sd in _data(self.card, self.network):
-            run, quantity, body = label
-            unit = "degC" if quantity == "plateau" else "s"
-            rows.append({"run": run, "body": body, "quantity": quantity, "unit": unit, "measured": measured,
-                         "computed": computed, "sd": sd})  # fmt: skip
-        return rows
+        return _rows(self.card, self.network)
 
     @property
     def misfit(self) -> float:
         """Mean square of the residuals over their standard deviations, per degree of freedom: about 1 if all agree."""
         free = max(len(self.rows) - len(self.numbers), 1)
-        return sum(((row["measured"] - row["computed"]) / row["sd"]) ** 2 for row in self.rows) / free
+        return sum(_off(row) ** 2 for row in self.rows) / free
+
+    @property
+    def words(self) -> tuple[str, ...]:
+        """Sentences on what is doubtful: the measurement that the bodies miss most, and numbers that come out as 0."""
+        out = []
+        if any(number.doubtful for number in self.numbers):
+            out.append(f"DOUBTFUL: these bodies cannot have what was measured; {_worst(self.rows)}.")
+        none = [number.name for number in self.numbers if number.value == 0.0]
+        if none:
+            out.append(f"0 fits best, and no less is possible: {', '.join(none)}.")
+        return tuple(out)
 
     def to_dict(self) -> dict[str, Any]:
         """For JSON."""
@@ -102,6 +117,7 @@ class LumpedIdentification(Brief):
             "numbers": [number.to_dict() for number in self.numbers],
             "rows": self.rows,
             "misfit": self.misfit,
+            "words": list(self.words),
             "heat_sd": self.card.heat_sd,
         }
 
@@ -118,6 +134,7 @@ def identify(card: ThermalCard) -> LumpedIdentification:
     InputError : the measurements do not determine the numbers; says which, and what is missing.
     """
     from scipy.optimize import least_squares
+    from scipy.stats import chi2
 
     unknowns = _unknowns(card)
     if not unknowns:
@@ -139,22 +156,37 @@ def identify(card: ThermalCard) -> LumpedIdentification:
         return of_card(card, relative)
 
     _told_apart(card, unknowns, _jacobian(residuals, np.ones(len(start))))
-    low = np.full(len(start), 1e-6)
+    low = np.full(len(start), LOWEST)
     high = np.array([1.0 / item.start if item.kind == "shares" else np.inf for item in unknowns])
     fit = least_squares(residuals, np.ones(len(start)), bounds=(low, high), x_scale="jac", xtol=1e-12, ftol=1e-12)
     values = start * fit.x
-    # Relative to the fit, so that all numbers are alike.
-    jacobian = _jacobian(residuals, fit.x) * fit.x
-    _told_apart(card, unknowns, jacobian)
-    covariance = np.linalg.inv(jacobian.T @ jacobian)
-    hotter, colder = (of_card(_heated(card, 1 + step), fit.x) for step in (HEAT_STEP, -HEAT_STEP))
+    # Relative to the fit, so that all numbers are alike; a number that is 0 relative to its first guess.
+    zero = fit.x < ZERO
+    near, size = np.maximum(fit.x, ZERO), np.where(zero, 1.0, fit.x)
+    jacobian = _jacobian(residuals, near) * size
+    free = count - len(unknowns)
+    doubtful = free > 0 and bool(chi2.sf(2.0 * fit.cost, free) < CHANCE)
+    network = _network(card, unknowns, values)
+    try:
+        _told_apart(card, unknowns, jacobian)
+        covariance = np.linalg.inv(jacobian.T @ jacobian)
+        vague = [item for item, variance in zip(unknowns, np.diag(covariance), strict=True) if variance > VAGUE**2]
+        if vague:
+            raise _undetermined(card, vague)
+    except InputError as error:
+        if not doubtful:
+            raise
+        words = f"these bodies cannot have what was measured; {_worst(_rows(card, network))}"
+        raise InputError(words, field="runs") from error
+    hotter, colder = (of_card(_heated(card, 1 + step), near) for step in (HEAT_STEP, -HEAT_STEP))
     by_heat = -covariance @ jacobian.T @ (hotter - colder) / (2 * HEAT_STEP)
-    relative_sd = np.hypot(np.sqrt(np.diag(covariance)), by_heat * card.heat_sd)
+    sd = start * size * np.hypot(np.sqrt(np.diag(covariance)), by_heat * card.heat_sd)
     numbers = []
-    for item, value, sd in zip(unknowns, values, relative_sd, strict=True):
+    for item, value, spread, none in zip(unknowns, values, sd, zero, strict=True):
         area = card.films[item.at].area if item.kind in ("at_rest", "rise") else None
-        numbers.append(LumpedNumber(item.name, item.unit, float(value), float(value * sd), area))
-    return LumpedIdentification(card, _network(card, unknowns, values), tuple(numbers))
+        value = 0.0 if none else float(value)
+        numbers.append(LumpedNumber(item.name, item.unit, value, float(spread), area, doubtful))
+    return LumpedIdentification(card, network, tuple(numbers))
 
 
 def _heated(card: ThermalCard, factor: float) -> ThermalCard:
@@ -231,6 +263,31 @@ def _data(card: ThermalCard, network: LumpedNetwork) -> list[tuple[tuple[str, st
     return data
 
 
+def _rows(card: ThermalCard, network: LumpedNetwork) -> list[dict[str, Any]]:
+    """Every measured number beside the computed one."""
+    rows = []
+    for (run, quantity, body), measured, computed, sd in _data(card, network):
+        unit = "degC" if quantity == "plateau" else "s"
+        rows.append({"run": run, "body": body, "quantity": quantity, "unit": unit, "measured": measured,
+                     "computed": computed, "sd": sd})  # fmt: skip
+    return rows
+
+
+def _worst(rows: list[dict[str, Any]]) -> str:
+    """The measurement that is missed most, and what to look for."""
+    row = max(rows, key=lambda row: abs(_off(row)))
+    return (
+        f"worst: run '{row['run']}', {row['quantity']} of {row['body']}, measured {row['measured']:.4g}, computed "
+        f"{row['computed']:.4g} {row['unit']}. Check the readings and their units; else the tyre needs more bodies or "
+        "films"
+    )
+
+
+def _off(row: Mapping[str, Any]) -> float:
+    """Residual over its standard deviation."""
+    return float((row["measured"] - row["computed"]) / row["sd"])
+
+
 def _jacobian(residuals: Any, at: Array) -> Array:
     """Central differences, d residuals / d parameters."""
     columns = []
@@ -247,9 +304,15 @@ def _told_apart(card: ThermalCard, unknowns: list[_Unknown], jacobian: Array) ->
     sizes = np.concatenate([sizes, np.zeros(len(unknowns) - len(sizes))])
     if sizes[-1] > DETERMINED * sizes[0]:
         return
-    among = [item for item, share in zip(unknowns, np.abs(directions[-1]), strict=True) if share > NAMED]
+    raise _undetermined(
+        card, [item for item, share in zip(unknowns, np.abs(directions[-1]), strict=True) if share > NAMED]
+    )
+
+
+def _undetermined(card: ThermalCard, among: list[_Unknown]) -> InputError:
+    """The error of numbers that the measurements do not determine."""
     names = ", ".join(item.name for item in among)
-    raise InputError(f"the measurements do not determine {names}: {_missing(card, among)}", field="runs")
+    return InputError(f"the measurements do not determine {names}: {_missing(card, among)}", field="runs")
 
 
 def _missing(card: ThermalCard, among: list[_Unknown]) -> str:

@@ -41,6 +41,8 @@ def _csv(path: Path, heading: list[str], rows: list[dict[str, Any]]) -> None:
 def _card(identified: LumpedIdentification) -> dict[str, Any]:
     """The numbers as a card: quantity with unit, standard deviation, film coefficient where there is an area."""
     tables: dict[str, Any] = {"title": identified.card.title, "misfit": round(identified.misfit, 3)}
+    if identified.words:
+        tables["words"] = list(identified.words)
     for number in identified.numbers:
         entry: dict[str, Any] = {
             "value": f"{number.value:.5g} {number.unit}".removesuffix(" 1"),
@@ -69,6 +71,7 @@ def words(identified: LumpedIdentification) -> str:
         doubt = "" if number.verdict == "determined" else f"   {number.verdict}"
         lines.append(f"  {number.name:36} {number.value:10.4g} +- {number.sd:<8.2g} {number.unit}{film}{doubt}")
     lines.append(f"  misfit per degree of freedom {identified.misfit:.2f} (1: as the stated standard deviations)")
+    lines += [f"  {text}" for text in identified.words]
     return "\n".join(lines)
 
 

@@ -278,6 +278,7 @@ ANSWERS: dict[str, Keys] = {
         "title": "text: Title of the card.", "numbers": "list: Name, unit, value, sd, verdict; per area where known.",
         "rows": "list: Measured beside computed, with the standard deviation.",
         "misfit": "number: Mean square of the residuals over their sd, per degree of freedom.",
+        "words": "list: What is doubtful, and which numbers come out as 0.",
         "heat_sd": "number: Relative standard deviation of the heat.",
     },
     "road film": {
