@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from tyrefem.conduction.points import located
 from tyrefem.errors import InputError
+from tyrefem.geometry.meshing.sagitta import kept_inside
 from tyrefem.inputs.study import StudyData
 from tyrefem.output import atomic_path, jsonable
 from tyrefem.output.file import mark_archive
@@ -91,12 +92,11 @@ def outputs_of(study: StudyData, balance: ReducedBalance) -> list[dict[str, str]
 
 def _read(model: ReducedModel, study: StudyData, balance: ReducedBalance) -> tuple[Array, Array]:
     """(n_read, n) rows on the state of sensors and a lumped rim, and their lags, s."""
-    places, section = true_places(study), study.section
+    places = true_places(study)
     rows = np.zeros((len(places), len(balance.start)))
     lags = []
     if places:
-        s, depth = section.locate(np.array(list(places.values())).reshape(-1, 2))
-        points = section.place(*section.clamp(s, depth, model.base.mesh.size**2 / 0.1))
+        points = kept_inside(model.base.mesh, list(places.values()))
         rows[:, : model.size] = located(model.operators, points).value() @ model.V
     for name in places:
         lags.append(study.sensors[name].lag + sum(effect.lag_addend(name) for effect in study.effects))

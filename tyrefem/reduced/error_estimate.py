@@ -16,7 +16,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.geometry.wall import inside_mesh
+from tyrefem.geometry.meshing.sagitta import kept_inside
 from tyrefem.reduced.balance import ReducedBalance
 from tyrefem.reduced.batch import steady
 from tyrefem.reduced.budget import by_shape
@@ -143,5 +143,4 @@ def _rows(balance: ReducedBalance) -> Array:
     places = np.array(list(true_places(study).values()))
     if not len(places):
         return hot
-    inside = inside_mesh(study.section, balance.alike.mesh.size, *study.section.locate(places))
-    return np.vstack([model.rows(inside), hot])
+    return np.vstack([model.rows(kept_inside(model.base.mesh, places)), hot])

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from tyrefem.cache import Cache, Content
 from tyrefem.conduction.budget import Budget
 from tyrefem.conduction.field import Peak
-from tyrefem.geometry.wall import inside_mesh
+from tyrefem.geometry.meshing.sagitta import kept_inside
 from tyrefem.reduced.budget import end_budgets
 from tyrefem.reduced.error_estimate import estimated_errors
 from tyrefem.reduced.solution import NODES, BatchSolution
@@ -74,7 +74,7 @@ class Readout:
             return {}
         section, stated = study.section, tuple(places.values())
         built_in = balance.model.sensor_places.get(
-            (section, stated), lambda: inside_mesh(section, tyre.mesh.size, *section.locate(np.array(stated)))
+            (section, stated), lambda: kept_inside(balance.model.base.mesh, np.array(stated))
         )
         if balance.known is None:
             return recorded(study, self.times, self.at(built_in, variant))

@@ -15,8 +15,8 @@ from tyrefem.brief import SHOWN, Brief
 from tyrefem.conduction.field import History
 from tyrefem.conduction.points import OutsideMeshError, as_points
 from tyrefem.errors import InputError
-from tyrefem.geometry.meshing.sagitta import nearest_places, snapped
-from tyrefem.geometry.wall import inside_mesh, wall_of
+from tyrefem.geometry.meshing.sagitta import kept_inside, nearest_places, snapped
+from tyrefem.geometry.wall import wall_of
 from tyrefem.mechanics.cautions import warnings_of
 from tyrefem.quantity import KELVIN
 from tyrefem.simulation.effect_states import StateHistory
@@ -155,11 +155,10 @@ class ResultData(Brief):
         return true_places(self.study)
 
     def _inside(self, points: ArrayLike) -> Array:
-        """Move surface points into the mesh, at most by the sagitta of straight-sided elements."""
+        """Points (n, 2) of the rubber, those outside the straight-sided elements moved to the nearest edge."""
         section = self.study.section
-        return inside_mesh(
-            section, self.tyre.mesh.size, *section.locate(np.asarray(points, dtype=float).reshape(-1, 2))
-        )
+        s, depth = section.locate(np.asarray(points, dtype=float).reshape(-1, 2))
+        return kept_inside(self.tyre.mesh, section.place(*section.clamp(s, depth)))
 
     @property
     def sensor_points(self) -> Array:

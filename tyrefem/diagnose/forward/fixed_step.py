@@ -17,7 +17,7 @@ from tyrefem.conduction.fixed_steps import GAMMA, fixed_step_solution
 from tyrefem.conduction.points import located
 from tyrefem.conduction.sensitivity import stage_times
 from tyrefem.effects import catalogue
-from tyrefem.geometry.wall import inside_mesh
+from tyrefem.geometry.meshing.sagitta import kept_inside
 from tyrefem.inputs.study import StudyData
 from tyrefem.mechanics.nearby_cycles import NearbyCycles
 from tyrefem.simulation.rolling_tyre import RollingTyre
@@ -87,7 +87,8 @@ class FixedStepRun:
 
     def at(self, s: Array, depth: Array) -> Array:
         """(n_grid, n_places) degC at stations and depths (n_places,), m."""
-        points = inside_mesh(self.tyre.study.section, self.tyre.mesh.size, s, depth)
+        section = self.tyre.study.section
+        points = kept_inside(self.tyre.mesh, section.place(*section.clamp(s, depth)))
         return self.dense((located(self.tyre.problem.operators, points).value() @ self.values.T).T)
 
     @cached_property
@@ -141,8 +142,9 @@ class FixedStepRun:
 
         ``shift`` (n_sensors, 2) m: as in `displaced`. Where the wall ends a slope is that towards the inside.
         """
-        steps = self._steps_inside(shift)
-        shifts = np.array([np.zeros_like(shift), shift, shift, shift])
+        inside = self._shift_inside(shift)
+        steps = self._steps_inside(inside)
+        shifts = np.array([np.zeros_like(shift), shift, inside, inside])
         shifts[2, :, 0] += steps[:, 0]
         shifts[3, :, 1] += steps[:, 1]
         changes, of_sensor = {}, dict(zip(self.study.stated_places, steps, strict=True))
@@ -162,25 +164,32 @@ class FixedStepRun:
             steps[distance < QUOTIENT / 2, direction] = -QUOTIENT
         return steps
 
+    def _shift_inside(self, shift: Array) -> Array:
+        """(n_sensors, 2) m: the shift to where a moved sensor is read, which in the mesh's edge is a sagitta deeper."""
+        section, places = self.tyre.study.section, np.array(list(self.study.stated_places.values())).reshape(-1, 2)
+        stated = np.column_stack(section.locate(places))
+        known = np.array(list(displacements(self.study).values())).reshape(-1, 2)
+        wanted = stated + known + shift
+        read = self._moved(shift)
+        at_edge = np.linalg.norm(section.place(*wanted.T) - read, axis=1) > 1e-9
+        return np.where(at_edge[:, None], np.column_stack(section.locate(read)) - stated - known, shift)
+
     def _moved(self, shifts: Array) -> Array:
         """(..., n_sensors, 2) m: (r, z) of the sensors, moved by ``shifts`` (..., n_sensors, 2) m and kept inside."""
         section = self.tyre.study.section
         s, depth = section.locate(np.array(list(self.study.stated_places.values())).reshape(-1, 2))
         known = np.array(list(displacements(self.study).values())).reshape(-1, 2)
         along, deeper = np.moveaxis(known + shifts, -1, 0)
-        places = inside_mesh(section, self.tyre.mesh.size, (s + along).ravel(), (depth + deeper).ravel())
-        return places.reshape(shifts.shape)
+        places = section.place(*section.clamp((s + along).ravel(), (depth + deeper).ravel()))
+        return kept_inside(self.tyre.mesh, places).reshape(shifts.shape)
 
 
 def sensor_points(study: StudyData, tyre: RollingTyre) -> Array:
     """(n_sensors, 2) m: places of a study's sensors in a tyre's mesh, kept within the straight-sided elements."""
     places = np.array(list(true_places(study).values())).reshape(-1, 2)
-    section, size = tyre.study.section, tyre.mesh.size
-
-    def compute() -> Array:
-        return inside_mesh(section, size, *section.locate(places))
-
-    return _POINTS.get((section, size, Content.of(places)), compute)
+    mesh = tyre.mesh
+    key = mesh.section, mesh.mesher, mesh.cell, mesh.size, Content.of(mesh.mesh.p), Content.of(places)
+    return _POINTS.get(key, lambda: kept_inside(mesh, places))
 
 
 def read(study: StudyData, grid: Array, at_sensors: Array | None, lumped: dict[str, Array]) -> dict[str, Array]:

@@ -51,6 +51,35 @@ def nearest_places(tyre: TyreMesh, points: ArrayLike) -> Array:
     return np.concatenate([_nearest(_edges(tyre), part)[0] for part in parts] or [places])
 
 
+def kept_inside(tyre: TyreMesh, points: ArrayLike) -> Array:
+    """Points (n, 2), those outside the mesh moved to the nearest point of its edge: of a section's surface, a sagitta.
+
+    >>> from tyrefem.geometry import load
+    >>> from tyrefem.geometry.meshing import build
+    >>> tyre = build(load("nasa-22x5.5-8pr"), size=8e-3)
+    >>> points = tyre.section.place([0.004, 0.004], tyre.section.rubber_thickness([0.004]) - [0.0, 1e-4])
+    >>> moved = np.linalg.norm(kept_inside(tyre, points) - points, axis=1)
+    >>> bool(1e-5 < moved[0] < 1e-4), float(moved[1])
+    (True, 0.0)
+    """
+    places = np.array(points, dtype=float).reshape(-1, 2)
+    ends = _edges(tyre)
+    for first in range(0, len(places), TOGETHER):
+        part = places[first : first + TOGETHER]
+        outside = ~_enclosed(ends, part)
+        part[outside] = _nearest(ends, part[outside])[0]
+    return places
+
+
+def _enclosed(ends: Array, points: Array) -> NDArray[np.bool_]:
+    """Whether closed edges with these ends hold the points (n, 2): a ray along z meets them an odd number of times."""
+    (r_1, z_1), (r_2, z_2) = ends[:, 0].T, ends[:, 1].T
+    r, z = points[:, :1], points[:, 1:]
+    beside = (r_1 > r) != (r_2 > r)
+    run = np.where(r_2 == r_1, 1.0, r_2 - r_1)
+    return np.asarray((beside & (z < z_1 + (r - r_1) / run * (z_2 - z_1))).sum(axis=1) % 2 == 1)
+
+
 def _edges(tyre: TyreMesh) -> Array:
     """Ends of the edges at the mesh's boundary, (n, 2, 2)."""
     return np.asarray(tyre.mesh.p.T[tyre.mesh.facets[:, tyre.mesh.boundary_facets()].T])
