@@ -121,6 +121,17 @@ def test_a_state_given_back_goes_on_to_the_bit(exported):
         other.state = kept[1:]
 
 
+def test_a_step_of_a_nanosecond_is_a_step(exported):
+    """Masters with events make such steps: they are not lost."""
+    tyre = RealTimeTyre(exported.file)
+    tyre.step(1.0, WARM)
+    before, time = tyre.state, tyre.time
+    for _ in range(10):
+        tyre.step(1e-9, WARM)
+    assert tyre.time - time == pytest.approx(1e-8, rel=1e-3)
+    assert (tyre.state != before).any()
+
+
 def test_inputs_outside_the_box_are_refused_or_moved_to_its_edge(exported):
     tyre = RealTimeTyre(exported.file)
     with pytest.raises(ValueError, match=r"speed = 40 is outside 0 to 12 m/s"):

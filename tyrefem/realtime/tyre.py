@@ -188,7 +188,7 @@ class RealTimeTyre:
         self.clamped = list(dict.fromkeys(clamped + self.clamped)) if later is not None else clamped
         if math.isnan(self._filled):
             self._fill(first.pressure)
-        parts = math.ceil(dt / LONGEST - 1e-9)
+        parts = max(1, math.ceil(dt / LONGEST - 1e-9))
         a, b = np.array(_values(first)), np.array(_values(last))
         for k in range(parts):
             self._advance(dt / parts, a + (b - a) * (k / parts), a + (b - a) * ((k + 1) / parts))
