@@ -50,7 +50,7 @@ def test_the_sagitta_of_an_arc_is_h2_over_8r(result: tf.Result) -> None:
 
 @pytest.mark.parametrize("size", ["3 mm", "6 mm"])
 def test_a_camera_on_the_surface_reads_the_temperature_that_the_films_have(size: str) -> None:
-    """k dT/dn = (1 - f) h_air (T - T_a) + f h_road (T - T_r) on the tread, k dT/dn = h_air (T - T_a) on the sidewall."""
+    """k dT/dn = (1 - f) h_air (T - T_a) + f h_road (T - T_r); on the sidewall f = 0."""
     depths, ambient, road = (0.0, 0.4, 0.8, 1.2), 25.0, 45.0
     sensors = {
         f"{name}-{number}": {"s": s, "below_surface": f"{depth} mm"}

@@ -10,7 +10,9 @@ import pytest
 from cases import measured, properties, truth
 
 from tyrefem.heating_test.grid import Fineness
+from tyrefem.heating_test.parameters import at
 from tyrefem.heating_test.readings import matched
+from tyrefem.heating_test.twin import Twin
 from tyrefem.rig import Identification, RigCard, identify, load, simulate
 
 COARSE, MIDDLE = Fineness(2, 5, 2), Fineness(3, 7, 3)
@@ -117,6 +119,42 @@ def test_a_late_clock_is_no_property_of_the_tyre() -> None:
     for name, value in (("tread.conductivity", 0.25), ("tread.specific_heat", 1700.0)):
         assert right.by_name[name].holds(value)
     assert not any("DOUBTFUL" in words for words in right.words)
+
+
+def test_a_spot_larger_than_the_card_says_is_doubtful() -> None:
+    """11 mm for 10 mm: the fit gives wrong properties with small intervals, and must not call them determined."""
+    card = rig(heating=500.0, cooling=150.0)
+    wide = card.model_copy(update={"laser": card.laser.model_copy(update={"spot_diameter": 11e-3})})
+    done = simulate(wide, every=10.0, seed=7, fineness=COARSE)
+    tests = [matched(card, run, list(card.sensors)) for run in done.runs.values()]
+    identification = identify(card, tests=tests, fineness=COARSE, linear=False)
+    assert not identification.by_name["tread.specific_heat"].holds(1700.0)
+    assert {estimate.verdict for estimate in identification.properties} <= {"doubtful", "not determined"}
+    assert "spot diameter" in identification.words[0]
+    assert not any("determine all" in words for words in identification.words)
+
+
+def test_an_uncertain_emissivity_of_the_cameras_is_fitted() -> None:
+    """Cameras that read 5 % less rise, by their emissivity setting: with its deviation the intervals hold the truth."""
+    card = rig(heating=150.0, cooling=0.0)
+    values = {"outer.gain": 0.95, "inner.gain": 0.95}
+    sensors = {
+        name: sensor.model_copy(update={"gain_sd": 0.05}) if sensor.instrument == "camera" else sensor
+        for name, sensor in card.sensors.items()
+    }
+    fitted = of_itself(card.model_copy(update={"sensors": sensors}), values, linear=False)
+    for name, value in (("tread.conductivity", 0.25), ("tread.specific_heat", 1700.0)):
+        assert fitted.by_name[name].holds(value), name
+    assert fitted.by_name["outer.gain"].holds(0.95)
+    # The sensitivity of the gain is that of whole readings.
+    name = "outer.gain"
+    place, every = fitted.fit.parameters.names.index(name), fitted.fit.parameters
+    clock, run = fitted.tests[0].clock, fitted.tests[0].run
+    twin = Twin(fitted.card, tuple(fitted.card.sensors), COARSE)
+    moved = [twin.readings(every.values(at(fitted.fit.x, place, step)), run, clock) for step in (0.1, -0.1)]
+    fields = twin.fields(every.values(fitted.fit.x), run, clock)
+    slopes = twin.slopes(every, fitted.fit.x, run, clock, fields, moved[0])[:, :, place]
+    np.testing.assert_allclose(slopes, (moved[0] - moved[1]) / 0.2, rtol=0.01, atol=1e-3)
 
 
 def test_a_number_far_from_the_card_is_named() -> None:

@@ -154,7 +154,8 @@ class SensorCard(Card):
     """``camera``: the mean over a disc of the outer or inner ``face``; ``thermocouple``: a point at a ``depth``.
 
     ``aside``: distance along the face from the rig's mark. Standard deviations: ``noise`` of a reading, ``offset_sd``
-    of a constant error. Only thermocouples have ``depth_sd`` and ``lag`` (first order, with relative ``lag_sd``).
+    of a constant error, ``gain_sd`` of a relative error of the rise over the start, such as by a camera's emissivity.
+    Only thermocouples have ``depth_sd`` and ``lag`` (first order, with relative ``lag_sd``).
     """
 
     instrument: Literal["camera", "thermocouple"]
@@ -167,6 +168,7 @@ class SensorCard(Card):
     lag_sd: Relative = 0.0
     noise: Annotated[float, Unit("delta_degC", gt=0, le=50)]
     offset_sd: Annotated[float, Unit("delta_degC", ge=0, le=50)] = 0.0
+    gain_sd: Annotated[float, Unit("1", ge=0, lt=0.5)] = 0.0
 
     @model_validator(mode="after")
     def _complete(self) -> SensorCard:

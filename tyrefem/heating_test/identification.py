@@ -171,6 +171,6 @@ def _result(
     sd = np.sqrt(np.diag(covariance))
     correlation = (covariance / np.outer(sd, sd))[np.ix_(order, order)]
     estimates = tuple(estimate_of(fit.parameters.free[i], float(fit.x[i]), float(sd[i])) for i in order)
-    if missed(fit.noise):
+    if missed(fit.noise, fit.blocks):
         estimates = tuple(replace(each, doubtful=each.group == PROPERTY) for each in estimates)
     return IdentificationData(card, file, tests, fit, selection, estimates, correlation)

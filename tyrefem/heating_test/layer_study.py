@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
@@ -98,7 +98,10 @@ class LayerStudy:
                     "rms_K": float(np.sqrt(np.mean(np.concatenate([b.residual**2 for b in fit.fit.blocks])))),
                     "model_error": max(fit.fit.noise.model.values()),
                     "log_evidence": fit.fit.evidence - self.fits[0].fit.evidence,
-                    "determined": sum(estimate.verdict == "determined" for estimate in fit.properties),
+                    # Too few layers are doubtful; how many properties the readings carry is another question.
+                    "determined": sum(
+                        replace(estimate, doubtful=False).verdict == "determined" for estimate in fit.properties
+                    ),
                     "properties": len(fit.properties),
                 }
             )

@@ -137,6 +137,7 @@ def parameters_of(card: RigCard, sensors: Sequence[str], runs: Sequence[str] | N
             spread = sensor.lag_sd if sensor.lag else 0.0
             listed.append(_log(f"{name}.lag", "s", sensor.lag, spread, RIG))
         listed.append(RigParameter(f"{name}.offset", "K", "linear", 0.0, sensor.offset_sd, RIG))
+        listed.append(_log(f"{name}.gain", "1", 1.0, sensor.gain_sd, RIG))
     for run in card.runs if runs is None else runs:
         listed.append(RigParameter(clock_of(run), "s", "linear", 0.0, card.phases.clock_sd, RIG))
     free = tuple(parameter for parameter in listed if parameter.spread > 0)

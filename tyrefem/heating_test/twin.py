@@ -20,7 +20,7 @@ Array = NDArray[Any]
 #: Allowed time-integration error, K: far below the cameras' noise.
 TOLERANCE = 0.1
 #: Parameters of sensors only, which need no new solution.
-_VIEWS = ("spot_along", "spot_across", "depth", "lag", "offset")
+_VIEWS = ("spot_along", "spot_across", "depth", "lag", "offset", "gain")
 #: Parameters of tables only: they shift the times at which a table has its readings, not the readings of a time.
 _TABLES = ("clock",)
 
@@ -90,7 +90,8 @@ class Twin:
         for name in self.sensors:
             row = view(name, self.card.sensors[name], grid, values)
             raw = np.asarray(fields @ row.T.toarray())[:, 0]
-            columns.append(clock.lagged(raw, values.get(f"{name}.lag", 0.0)) + values[f"{name}.offset"])
+            rise = values[f"{name}.gain"] * (clock.lagged(raw, values.get(f"{name}.lag", 0.0)) - raw[0])
+            columns.append(raw[0] + rise + values[f"{name}.offset"])
         return np.stack(columns, axis=1)
 
     def readings(self, values: Mapping[str, float], run: RunCard, clock: Clock) -> Array:
@@ -114,7 +115,7 @@ class Twin:
             raw = np.einsum("tup,u->tp", tangent, row)
             for i, slope in zip(solved, clock.lagged(raw, values.get(f"{name}.lag", 0.0)).T, strict=True):
                 parameter = parameters.free[i]
-                out[:, column, i] = slope * parameter.spread
+                out[:, column, i] = values[f"{name}.gain"] * slope * parameter.spread
         for i, parameter in enumerate(parameters.free):
             if i in solved or _of_tables(parameter):
                 continue

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tyrefem.heating_test.noise import missed
+from tyrefem.heating_test.noise import ASTRAY, highest_rise, missed
 from tyrefem.heating_test.parameters import PROPERTY, RIG, SLOPE
 from tyrefem.heating_test.selection import POOR, ParameterEstimate
 
@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 
 #: Correlation above which two properties are reported as dependent.
 BOUND = 0.95
-#: Model error, relative to the rise, with a warning; temperature at which rubber changes, degC.
-ASTRAY, HOT = 0.01, 200.0
+#: Temperature at which rubber changes, degC.
+HOT = 200.0
 #: What a verdict between "determined" and "not determined" means.
 REMARK = {"poor": "poorly determined by the readings", "doubtful": "doubtful: the model does not describe the readings"}
 #: Standard deviations of the card from which on an identified number is reported as unusual.
@@ -77,10 +77,11 @@ def sentences(identification: IdentificationData) -> tuple[str, ...]:
 
 def _doubt(identification: IdentificationData) -> Iterator[str]:
     """That the model misses the readings of a sensor, and what to look for."""
-    phases, sensors = identification.card.phases, missed(identification.fit.noise)
+    phases, sensors = identification.card.phases, missed(identification.fit.noise, identification.fit.blocks)
     yield (
         f"DOUBTFUL: the model does not describe the readings of {' and '.join(sensors)}; conductivities and specific "
-        "heats may be wrong by more than their intervals. Look at the residuals first."
+        "heats may be wrong by more than their intervals. Look at the residuals first. Usual reasons: spot diameter or "
+        "profile, moving air, a camera's emissivity, layers left out or in another order, gaps between layers."
     )
     switches = np.array([phases.idle, phases.idle + phases.heating])
     for block in identification.fit.blocks:
@@ -169,7 +170,7 @@ def _linear(identification: IdentificationData) -> Iterator[str]:
 
 def _misfit(identification: IdentificationData) -> Iterator[str]:
     for name, error in identification.fit.noise.model.items():
-        rise = max(float(block.rise.max()) for block in identification.fit.blocks if block.series.sensor == name)
+        rise = highest_rise(identification.fit.blocks, name)
         # Less than the noise of a reading is no sign of a missing effect, however small the rise.
         if error > ASTRAY and error * rise > identification.card.sensors[name].noise:
             yield (
