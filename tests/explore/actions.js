@@ -1,13 +1,16 @@
 /* Somebody uses the page; what it then shows. */
 const E = window.explore, out = {}, $ = (id) => document.getElementById(id), text = (id) => $(id).textContent;
-const settle = async () => { await frame(); await frame(); await wait(900); };
+/* Charts and texts follow a setting at once; the spoken sentence waits for half a second. */
+const settle = async (longer = 60) => { await frame(); await frame(); await wait(longer); };
+/* Until something is so: as long as it takes, on a slow machine too. */
+const until = async (so) => { for (let tries = 0; tries < 2400 && !so(); tries++) await wait(25); };
 await settle();
 out.first = { badge: text("badge"), command: text("command"), toml: text("toml"), tiles: text("tiles"), over: document.querySelectorAll(".tile.over").length };
 /* A key moves a slider by a hundredth of its range. */
 const slider = $("slider-0"), before = E.state.numbers[0];
 slider.focus();
 slider.dispatchEvent(new KeyboardEvent("keydown", { key: "ArrowRight", bubbles: true, cancelable: true }));
-await settle();
+await settle(900);
 out.key = { moved: E.state.numbers[0] - before, value: Number(slider.value), spoken: slider.getAttribute("aria-valuetext"), live: text("live"), field: slider.closest(".slider").querySelector("input[type=number]").value };
 slider.dispatchEvent(new KeyboardEvent("keydown", { key: "End", bubbles: true, cancelable: true }));
 await settle();
@@ -41,7 +44,7 @@ $("pin-b").click();
 await settle();
 out.pins = { shown: !$("pins-body").hidden, rows: [...document.querySelectorAll("#pins-table tr")].map((row) => [...row.children].map((cell) => cell.textContent)), note: text("difference-note"), hottest: [E.state.pins.A, E.state.pins.B].map((pin) => pin.solution.answers().hottest_degC), ghosts: document.querySelectorAll("#history-chart .ghost").length };
 /* The envelope: along its line the hottest place is at its limit. */
-await wait(3000);
+await until(() => E.state.envelopeDone);
 out.envelope = E.state.envelope.filter(([, root]) => root.at !== null).map(([u, root]) => {
   const numbers = E.state.numbers.slice();
   numbers[E.state.axes[0]] = u;
