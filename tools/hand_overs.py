@@ -48,7 +48,7 @@ def last_form(steps: Iterable[Step], module: str) -> str:
     return next((step.form for step in reversed(tuple(steps)) if step.module == module != step.taker), "")
 
 
-@dataclass
+@dataclass(slots=True)
 class Call:
     """A function at work: its module, and whether it was handed the value."""
 

@@ -20,7 +20,7 @@ import numpy as np
 from hand_overs import Follower, Step, last_form, parts
 
 STUDY = "nasa-22x5.5-8pr"
-CHANGES = {"mesh.size": "12 mm", "drive.duration": "120 s"}
+CHANGES = {"mesh.size": "16 mm", "drive.duration": "120 s"}
 #: Candidates of the diagnosis: few, as each costs a simulation.
 CANDIDATES = ("sun", "sensor-offset")
 SENSORS = ("crown-inner", "crown-middle")
@@ -88,6 +88,11 @@ def holds_reading(value: Any) -> bool:
 
 
 def _holds(value: Any, depth: int) -> bool:
+    # The most frequent kinds first.
+    if type(value) is float:
+        return abs(value - READING) < 1e-9
+    if type(value) is np.ndarray:
+        return value.dtype.kind == "f" and bool((np.abs(value - READING) < 1e-9).any())
     if value is None or isinstance(value, bool | int):
         return False
     if type(value).__name__ in MADE_OF and type(value).__module__.startswith("tyrefem."):
@@ -123,8 +128,12 @@ def thermocouple_walk() -> ThermocoupleWalk:
     computed = study.run().readings
     times = np.arange(5.0, 120.0, 10.0)
     columns = {f"{name} [degC]": np.interp(times, computed["time_s"], computed[name]) for name in SENSORS}
-    columns[f"{SENSORS[0]} [degC]"][NUMBER] = READING
-    settings = DiagnosisSettings(mesh_size=CHANGES["mesh.size"], largest=1, looks=1)
+    # All readings of the column are off alike, as an offset of the sensor explains: one alone would be heat of unknown
+    # origin, and other strain laws would be tried.
+    first = columns[f"{SENSORS[0]} [degC]"]
+    first += READING - first[NUMBER]
+    first[NUMBER] = READING
+    settings = DiagnosisSettings(mesh_size=CHANGES["mesh.size"], largest=1, looks=1, readings_every=20.0)
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "run.csv"
         pd.DataFrame({"time [s]": times, **columns}).to_csv(file, index=False)
