@@ -7,6 +7,7 @@ import math
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
 from odd_studies import END, FITTED, HELD_OUT, SENSORS, table, write
 
@@ -14,6 +15,7 @@ import tyrefem as tf
 from tyrefem.diagnose.forward.forward_model import ForwardModel
 from tyrefem.diagnose.layout.isolability import isolability, planned
 from tyrefem.diagnose.next_experiment import drive_gain
+from tyrefem.diagnose.settings import DiagnosisSettings
 from tyrefem.diagnose.unknowns.candidates import catalogue_candidates
 from tyrefem.errors import InputError
 
@@ -113,8 +115,15 @@ def test_without_sensors_the_next_drive_is_judged_by_the_contained_air(here: Pat
 def test_a_diagnosis_without_held_out_runs_claims_nothing_of_them(phases: int, here: Path) -> None:
     drive = {} if phases == 1 else {"phases": [{"duration": "40 s"}, {"speed": "0 mph", "duration": "20 s"}]}
     folder = write(here / "fitted", measured=[FITTED], drive=drive)
-    table(folder / "a.csv", list(SENSORS), rate=0.3)
-    result = tf.study(folder).diagnose(largest=1, looks=1)
+    study = tf.study(folder)
+    # A sensor reads too much: that is explained soon.
+    readings = study.run().readings[["time_s", *SENSORS]]
+    readings[list(SENSORS)] += np.random.default_rng(0).normal(0.0, 0.5, (len(readings), len(SENSORS)))
+    readings["crown-outer"] += 8.0
+    names = {"time_s": "time [s]", **{name: f"{name} [degC]" for name in SENSORS}}
+    readings.rename(columns=names).to_csv(folder / "a.csv", index=False)
+    settings = DiagnosisSettings(mesh_size="12 mm", largest=1, looks=1, heat_widths=(3.0,), discrepancy_sizes=(1.0,))
+    result = study.diagnose(settings=settings)
     assert math.isnan(result.null.held_out_p)
     result.save(here / "out")
     record = json.loads((here / "out/verdict.json").read_text(encoding="utf-8"))
