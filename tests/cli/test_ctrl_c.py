@@ -243,6 +243,7 @@ def test_a_comparison_goes_on(here: Path) -> None:
     lines = done.err.splitlines()
     assert done.code == 130
     assert lines[0].endswith("; 2 are reused from an interrupted comparison")
-    assert lines[1:] == ["tyrefem: interrupted; 45 finished simulations are kept; the same command resumes from there"]
+    # Between them lines of progress, on a slow machine.
+    assert lines[-1] == "tyrefem: interrupted; 45 finished simulations are kept; the same command resumes from there"
     assert main([*command, "--quiet"]) == 0
     assert not (here / "out/.progress").exists()
