@@ -102,9 +102,12 @@ def _path(name: str) -> Path:
 def load(kind: str, reference: object, near: Path | None = None) -> tuple[dict[str, Any], Path, str]:
     """Plain data, file and name of a referenced card.
 
-    ``reference`` is a name or path, or a table ``{base = NAME, ...}`` whose other keys replace those
-    of that card. A section may be a size such as
-    ``"205/60R15"``, or a table ``{size = ..., parameters = ...}``.
+    ``reference`` is a name or path, or a table ``{base = NAME, ...}`` whose other keys replace those of that card. A
+    section may be a size such as ``"205/60R15"``, or a table ``{size = ..., parameters = ...}``.
+
+    Raises
+    ------
+    InputError : no such card, a table without ``base``, or a file that cannot be read.
     """
     if of_size(kind, reference, near):
         data, laid = section_of_size(reference)  # type: ignore[arg-type]

@@ -190,6 +190,21 @@ def test_bad_arguments(tyre: TyreMesh, tmp_path: Path) -> None:
     with pytest.raises(InputError, match="names cannot be kept"):
         write(tyre, tmp_path / "tyre.stl")
     with pytest.raises(InputError, match="cannot be written"):
-        write(tyre, tmp_path / "no such folder" / "tyre.msh")
+        write(tyre, path / "tyre.msh")
     with pytest.raises(InputError, match="overlap"):
         write(tyre.with_zones({"zone": ("tread", 0.0, tyre.section.line.shoulder_s)}), tmp_path / "tyre.msh")
+
+
+def test_a_failure_keeps_the_older_file(tyre: TyreMesh, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = write(tyre, tmp_path / "tyre.msh")
+    before = path.read_bytes()
+
+    def full_disk(target: Path, *_: object, **__: object) -> None:
+        Path(target).write_bytes(b"half")
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(meshio, "write", full_disk)
+    with pytest.raises(InputError, match=r"cannot be written: .*No space left"):
+        write(tyre, path)
+    assert path.read_bytes() == before
+    assert list(tmp_path.iterdir()) == [path]

@@ -56,8 +56,8 @@ def shifts(
 ) -> tuple[LifeShift, ...]:
     """The shortest life of the study under each change alone, all else as written; by default those of `shifts_of`.
 
-    Without a run (a life at a given temperature) the ambient's step is added to that temperature, and speed changes
-    nothing but is told.
+    Without a run (a life at a given temperature) the ambient's step is added to that temperature. Speed then changes
+    nothing; it is listed all the same.
     """
     made = []
     for name in shifts_of(before.study) if which is None else which:

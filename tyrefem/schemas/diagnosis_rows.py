@@ -186,6 +186,12 @@ DIAGNOSIS_ROWS: dict[str, Keys] = {
 
 #: The same deeper inside.
 DIAGNOSIS_INNER: dict[str, Keys] = {
+    **{
+        f"diagnose.{rows}[].variant": {
+            "*": "any: Choice of the effect, such as sensor, and what was chosen; empty without a choice.",
+        }
+        for rows in ("effects", "candidates", "changes")
+    },
     "diagnose.effects[].parameters{}": _PARAMETER, "diagnose.candidates[].parameters{}": _PARAMETER,
     "diagnose.discrepancies[].parameters{}": _PARAMETER,
     "diagnose.effects[].moves": _MOVES,

@@ -102,12 +102,6 @@ INNER: dict[str, Keys] = {
         "*": "any: Why it was not used.",
     },
     "compare.fitted": _DEVIATION, "compare.held_out": _DEVIATION,
-    **{
-        f"diagnose.{rows}[].variant": {
-            "*": "any: Choice of the effect, such as sensor, and what was chosen; empty without a choice.",
-        }
-        for rows in ("effects", "candidates", "changes")
-    },
     "sweep.sample.finished": {
         "full": "integer: By full runs.", "reduced": "integer: By the reduced model.",
         "failed": "integer: Without answers.",

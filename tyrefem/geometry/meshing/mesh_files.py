@@ -14,7 +14,7 @@ from tyrefem.errors import InputError, nearest
 from tyrefem.geometry.meshing.groups import named_from
 from tyrefem.geometry.meshing.mesh import TyreMesh
 from tyrefem.geometry.section import Section
-from tyrefem.output import note_input
+from tyrefem.output import atomic_path, note_input
 from tyrefem.output.file import MARK
 from tyrefem.quantity import parse
 
@@ -112,7 +112,7 @@ def write(mesh: Any, path: str | Path) -> Path:
     """Write a mesh with its names, for `read`.
 
     gmsh files (``.msh``) hold physical names; VTK files (``.vtu``, ``.vtk``) cell data
-    ``region:NAME`` and ``boundary:NAME``.
+    ``region:NAME`` and ``boundary:NAME``. An older file survives a failure.
 
     Parameters
     ----------
@@ -149,14 +149,14 @@ def write(mesh: Any, path: str | Path) -> Path:
             tags[block][numbers] = tag
             field_data[what[1]] = np.array([tag, 2 - block])
         data = {"gmsh:physical": tags, "gmsh:geometrical": tags}
-    try:
-        with contextlib.redirect_stdout(io.StringIO()):
-            meshio.write(
-                path, meshio.Mesh(points, cells, cell_data=data, field_data=field_data), **WRITTEN[path.suffix]
-            )
-    except (Exception, SystemExit) as error:  # each format raises other errors
-        raise InputError(f"cannot be written: {error}", file=path) from error
-    _name_writer(path)
+    content = meshio.Mesh(points, cells, cell_data=data, field_data=field_data)
+    with atomic_path(path) as temporary:
+        try:
+            with contextlib.redirect_stdout(io.StringIO()):
+                meshio.write(temporary, content, **WRITTEN[path.suffix])
+        except (Exception, SystemExit) as error:  # each format raises other errors
+            raise InputError(f"cannot be written: {error}", file=path) from error
+        _name_writer(temporary)
     return path
 
 
