@@ -37,15 +37,27 @@ def test_road_sizes(text: str, kind: str, width: float, series: float | None, ri
         assert size.series == pytest.approx(series)
 
 
-def test_marks_on_the_wall_change_nothing() -> None:
+def test_marks_on_the_wall_leave_kind_width_and_load() -> None:
     plain = parse_size("205/55R16 94V")
     marks = ("XL", "EXTRA LOAD", "XL TL", "Tubeless", "M+S", "M&S 3PMSF", "SL", "Reinforced", ", M+S")
     for text in (*(f"205/55R16 94V {mark}" for mark in marks), "205/55R16 94VXL"):
         size = parse_size(text)
         assert size.text == text
         assert (size.kind, size.width, size.load) == (plain.kind, plain.width, plain.load)
+        assert size.extra_load == any(word in text.lower() for word in ("xl", "extra", "reinforced"))
     assert parse_size("295/80R22.5 152/148M TL").load == parse_size("295/80R22.5 152/148M").load
     assert parse_size("22x5.5 8PR TL").ply_rating == 8
+
+
+@pytest.mark.parametrize("size", ["10.00-20", "12.00-20 18PR", "8.50-10 8PR", "6.50-8", "7.00-16LT"])
+def test_bias_sizes_of_width_and_rim_are_refused_as_such(size: str) -> None:
+    with pytest.raises(InputError, match=r"is a bias tyre of which the size gives width and rim alone"):
+        parse_size(size)
+
+
+def test_a_bias_truck_size_names_the_tubeless_size_that_replaces_it() -> None:
+    with pytest.raises(InputError, match="11R22.5 replaces this one"):
+        parse_size("10.00-20")
 
 
 @pytest.mark.parametrize("mark", ["RFT", "Run Flat", "run-flat", "ZP", "SSR"])

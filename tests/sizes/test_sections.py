@@ -50,6 +50,17 @@ def test_road_tyres_have_the_standards_size(size: str, diameter: float, width: f
     assert draw_size(size).rules["rim_width"].value == pytest.approx(rim * INCH)
 
 
+@pytest.mark.parametrize(("size", "load"), [("205/55R16", 670), ("225/45R17", 670), ("195/65R15", 690)])
+def test_an_extra_load_is_carried_at_its_higher_reference_pressure(size: str, load: float) -> None:
+    """290 kPa in place of 250 kPa; load indices 94, 94 and 95 of these sizes' XL tyres, kg (ETRTO, from memory)."""
+    standard, extra = draw_size(size).rules, draw_size(f"{size} XL").rules
+    assert standard["rated_pressure"].value == pytest.approx(250e3)
+    assert extra["rated_pressure"].value == pytest.approx(290e3)
+    assert extra["rated_load"].value == pytest.approx(1.1 * standard["rated_load"].value, abs=10)
+    assert extra["rated_load"].value == pytest.approx(load * 9.80665, rel=0.04)
+    assert draw_size("205/55R16 94V XL").rules["rated_pressure"].value == pytest.approx(290e3)
+
+
 @pytest.mark.parametrize(
     ("size", "diameter", "width", "rim"),
     [

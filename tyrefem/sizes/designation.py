@@ -13,11 +13,12 @@ INCH, MM = 0.0254, 1e-3
 _NUMBER = r"\d{1,4}(?:\.\d{1,3})?"
 #: Load index with speed symbol, as "91V", "152/148M", "(94Y)".
 _SERVICE = r"(?:\s+\(?(?P<index>\d{2,3})(?:/\d{2,3})?\s*(?P<symbol>[A-HJ-NP-Y])\)?)?"
-#: Marks behind a size that change nothing in the section, and those of run-flat tyres.
+#: Marks behind a size: all that may stand there, those of an extra load, those of run-flat tyres.
 _MARKS = re.compile(
     r"\s*,?\s*(?:\b|(?<=\d[A-Z]))(?:XL|SL|extra load|standard load|reinforced|TL|tubeless|M\s?[+&/]\s?S|3PMSF)(?!\w)",
     re.IGNORECASE,
 )
+_EXTRA_LOAD = re.compile(r"(?:\b|(?<=\d[A-Z]))(?:XL|extra load|reinforced)(?!\w)", re.IGNORECASE)
 _RUN_FLAT = re.compile(r"\s*,?\s*\b(?:run[\s-]?flat|RFT|ROF|SSR|ZP)(?!\w)", re.IGNORECASE)
 _PLIES = r"(?:\s*,?\s*(?P<plies>\d{1,2})\s*-?\s*(?:PR|ply(?:\s*rating)?))?"
 #: Load range behind the rim, as "/E" or " E"; without LT before the size a C is that of commercial tyres.
@@ -38,6 +39,10 @@ _FLOTATION = re.compile(
 #: Inch sizes for flat rims with 5 degree seats, with tube or flap: ``12.00R20``.
 _FLAT_RIM = re.compile(
     rf"(?P<width>\d{{1,2}}(?:\.\d{{1,2}})?)\s?R\s?(?P<rim>\d{{2}})(?:LT|C)?{_SERVICE}{_PLIES}", re.IGNORECASE
+)
+#: Width and rim diameter of bias tyres, in: ``10.00-20`` of trucks, ``6.50-8`` of aircraft and forklifts.
+_WIDTH_AND_RIM = re.compile(
+    rf"(?P<width>\d{{1,2}}(?:\.\d{{1,2}})?)\s?-\s?(?P<rim>\d{{1,2}}(?:\.5)?)(?:LT|C)?{_SERVICE}{_PLIES}", re.IGNORECASE
 )
 _AIRCRAFT = re.compile(
     rf"(?:(?P<service>[BCH])\s?)?(?P<outside>{_NUMBER})\s?[x×X]\s?(?P<width>{_NUMBER})(?:\s?(?P<build>[-R])\s?(?P<rim>{_NUMBER}))?{_PLIES}",
@@ -75,6 +80,7 @@ class TyreSize:
     ``kind``: the rules that it follows, a module of `tyrefem.sizes.kinds`. ``series``: section height over width.
     ``outside_diameter``: nominal, of aircraft and flotation sizes, which give it in place of the series.
     ``load_range``: letter C to F of light-truck sizes, from the letter or the ply rating.
+    ``extra_load``: of passenger sizes, the mark XL, Extra Load or Reinforced.
 
     >>> size = parse_size("205/60R15 91V")
     >>> size.kind, round(size.width, 3), size.series, round(size.rim_diameter, 3), size.load
@@ -92,6 +98,7 @@ class TyreSize:
     load: float | None = None
     ply_rating: int | None = None
     load_range: str | None = None
+    extra_load: bool = False
 
     @property
     def section_height(self) -> float | None:
@@ -140,6 +147,12 @@ def parse_size(text: object) -> TyreSize:
         raise InputError(
             f"'{text}' is a size for flat rims with 5 deg seats, which have no rules here; truck sizes are for 15 deg "
             f"rims (diameters in half inches), such as 11R22.5 or 295/80R22.5{_tubeless(match)}",
+            field="size",
+        )
+    if match := _WIDTH_AND_RIM.fullmatch(plain):
+        raise InputError(
+            f"'{text}' is a bias tyre of which the size gives width and rim alone, which has no rules here; an aircraft "
+            f"tyre is written diameter x width - rim, such as H44.5x16.5-21; a road tyre as a radial{_tubeless(match)}",
             field="size",
         )
     if re.search(r"\bM/C\b", tidy, re.IGNORECASE):
@@ -191,7 +204,9 @@ def _metric(text: str, match: re.Match[str]) -> TyreSize:
         )
     width = float(match["width"]) * MM
     load_range = _load_range(text, match, "CDE") if light else None
-    return TyreSize(_tidy(text), kind, width, series / 100, rim * INCH, None, _load(match), _plies(match), load_range)
+    extra = kind == "passenger" and _EXTRA_LOAD.search(text) is not None
+    load, plies = _load(match), _plies(match)
+    return TyreSize(_tidy(text), kind, width, series / 100, rim * INCH, None, load, plies, load_range, extra)
 
 
 def _is_flotation(match: re.Match[str]) -> bool:
