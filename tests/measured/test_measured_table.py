@@ -280,3 +280,11 @@ def test_the_table_in_the_documentation_can_be_read(tmp_path):
     assert run.times.tolist() == [0.0, 60.0]
     assert run.temperatures["crown-inner"].tolist() == pytest.approx([25.0, 52.5 / 1.8])
     assert run.temperatures["shoulder"].isna().tolist() == [False, True]
+
+
+def test_names_with_separate_accents_are_those_with_composed_letters(tmp_path: Path) -> None:
+    """Some systems write a letter and its mark as two characters, which look the same."""
+    file = tmp_path / "t.csv"
+    file.write_text("time [s],Gu\u0308rtel [degC],Luft vorn\u0308 [degC],x [degC]\n0,25,25,20\n", encoding="utf-8")
+    (run,) = read_table(file, rename={"x": "Seite u\u0308"}, ignore=["Luft vorn\u0308"])
+    assert run.sensors == ("G\u00fcrtel", "Seite \u00fc")

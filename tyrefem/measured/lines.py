@@ -5,6 +5,7 @@ from __future__ import annotations
 import codecs
 import csv
 import re
+import unicodedata
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -34,7 +35,7 @@ class Lines:
 
 
 def decode(path: Path) -> str:
-    """The text of a file: UTF-8 with or without mark, UTF-16 with mark, else Latin-1.
+    """The text of a file: UTF-8 with or without mark, UTF-16 with mark, else Latin-1. Letters and marks are composed.
 
     Raises
     ------
@@ -64,7 +65,7 @@ def decode(path: Path) -> str:
         raise InputError(f"is not a text file (control character in line {line}): a CSV is wanted", file=path)
     if not text.strip():
         raise InputError("is empty", file=path)
-    return text
+    return unicodedata.normalize("NFC", text)
 
 
 def split(path: Path) -> Lines:

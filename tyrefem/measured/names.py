@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import unicodedata
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -37,7 +38,7 @@ class ColumnNames:
         if not isinstance(names, Mapping) or not all(isinstance(text, str) for pair in names.items() for text in pair):
             message = f"must give columns their sensors, like {{'T1': 'crown'}}, not {rename!r:.60}"
             raise InputError(message, field="rename")
-        return cls(dict(names), columns)
+        return cls({_composed(a): _composed(b) for a, b in names.items()}, tuple(map(_composed, columns)))
 
     def require(self, columns: Sequence[str]) -> None:
         """Raises InputError for names that no table has."""
@@ -45,6 +46,11 @@ class ColumnNames:
             missing = [name for name in names if name not in {*columns, *self.rename.values()}]
             if missing:
                 raise missing_columns_error(missing, purpose, dict.fromkeys(parts(name)[0] for name in columns))
+
+
+def _composed(name: str) -> str:
+    """A name as tables have it: a letter and its mark as one character."""
+    return unicodedata.normalize("NFC", name)
 
 
 def missing_columns_error(
