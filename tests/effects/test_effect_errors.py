@@ -196,6 +196,11 @@ def test_without_the_folder_it_is_gone(study: tf.Study) -> None:
         ("import nothing_like_it", "cannot be loaded: ModuleNotFoundError"),
         (OWN.format(name="lamp", scale="-1.0", default="0.0"), "effect 'lamp': parameter 'shine' needs a positive"),
         (OWN.format(name="lamp", scale="1.0", default="3.0"), "parameter 'shine' must have the default 0"),
+        (
+            OWN.format(name="lamp", scale="1.0", default="0.0").replace("0.0, 1e4", "1.0, 1e4"),
+            "parameter 'shine': 'null' is 0, outside its bounds 1 to 10000; 'null' is the value at which the effect is "
+            "absent; a period or a place has none: Prior(..., start=VALUE, amplitude=False)",
+        ),
         (OWN.format(name="lamp", scale="1.0", default="0.0").replace("def flux", "def flow"), "overrides no port"),
         (OWN.format(name="lamp", scale="1.0", default="0.0").replace('"boundary"', '"boundry"'), "'boundary'"),
         (OWN.format(name="lamp", scale="1.0", default="0.0").replace('"estimate', '"" #'), "needs 'source'"),

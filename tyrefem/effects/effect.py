@@ -375,7 +375,11 @@ def complaint(cls: type[Effect]) -> str | None:
             continue
         begin = prior.null if prior.amplitude else prior.start
         if begin is None or not prior.low <= begin <= prior.high:
-            return f"parameter '{name}' must begin from {prior.low:g} to {prior.high:g}, not at {begin}"
+            which = f"'null' is {begin:g}" if prior.amplitude else f"'start' is {begin}"
+            return (
+                f"parameter '{name}': {which}, outside its bounds {prior.low:g} to {prior.high:g}; 'null' is the value "
+                "at which the effect is absent; a period or a place has none: Prior(..., start=VALUE, amplitude=False)"
+            )
         if not 0 < prior.scale < np.inf:
             return f"parameter '{name}' needs a positive scale"
         if field.default != begin:
