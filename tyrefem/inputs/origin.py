@@ -21,7 +21,7 @@ WRITTEN = "# Written by tyrefem: the study that made the results beside this fil
 
 @dataclass(frozen=True)
 class StudyOrigin:
-    """The study that makes results: an `Origin` of `results_folder` and `results_file`.
+    """The study that makes results: a `ResultsOrigin` of `results_folder` and `results_file`.
 
     Parameters
     ----------

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from tyrefem.errors import InputError
 from tyrefem.output import WriteGuard, guarded, inputs_read, place_of_output
-from tyrefem.output.origin import Origin
+from tyrefem.output.origin import ResultsOrigin
 
 #: Picture formats, by the file's suffix.
 PICTURES = (".png", ".pdf", ".svg")
@@ -26,7 +26,7 @@ def results_file(
     suffixes: Sequence[str],
     *,
     also: Iterable[str | Path] = (),
-    origin: Origin | None = None,
+    origin: ResultsOrigin | None = None,
     force: bool = False,
 ) -> Iterator[Path]:
     """The file that a command writes, checked before any computing.

@@ -32,7 +32,7 @@ from tyrefem.output import (
     versions,
     write_json,
 )
-from tyrefem.output.origin import Origin
+from tyrefem.output.origin import ResultsOrigin
 
 #: Keys of ``summary.json`` that belong to the folder, not to the result.
 COMMAND, COMPLETE, FILES, CHECKSUMS, WRITING = "command", "complete", "files", "checksums", "writing"
@@ -54,7 +54,7 @@ def results_folder(
     command: str,
     names: Sequence[str],
     *,
-    origin: Origin | None,
+    origin: ResultsOrigin | None,
     inputs: Iterable[str | Path] = (),
     force: bool = False,
     keeps: Sequence[str] = (),
@@ -146,7 +146,7 @@ class ResultsFolder(WriteGuard):
         *,
         force: bool,
         keeps: Sequence[str],
-        origin: Origin | None,
+        origin: ResultsOrigin | None,
     ) -> None:
         self.folder = folder
         self.command = command

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, Protocol
 
 
-class Origin(Protocol):
+class ResultsOrigin(Protocol):
     """What makes the results of a folder, or of a single file."""
 
     def names(self, folder: Path) -> Sequence[str]:
