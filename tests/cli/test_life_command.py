@@ -27,6 +27,8 @@ def test_files_agree_with_each_other(here: Path, capfd: pytest.CaptureFixture[st
     folder = here / "out"
     assert summary == json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     assert summary["left_out_without_fatigue_table"] == ["bead"]
+    assert "tolerance_K" not in summary  # nothing is simulated
+    assert tf.study(str(folder / "study.toml")).card.mechanics.strain == "fem"
     assert summary["shortest_km"] == summary["places"][0]["life_km"] == min(summary["regions"].values())
     assert summary["share_of_phases_at_the_shortest"] == {"rolling": 1.0}
     with (folder / "life.csv").open(encoding="utf-8") as lines:
@@ -51,6 +53,7 @@ def test_a_run_gives_temperatures_and_sensitivities(here: Path, capfd: pytest.Ca
     assert main(["life", STUDY, *QUICK, "--no-pictures", "--no-vtk", "--out", "out"]) == 0
     words = capfd.readouterr().out
     summary = json.loads((here / "out" / "summary.json").read_text(encoding="utf-8"))
+    assert summary["tolerance_K"] == 0.01
     by_change = {shift["change"]: shift["over_the_life_before"] for shift in summary["sensitivity"]}
     assert list(by_change) == ["speed + 10 %", "load + 10 %", "pressure - 10 %", "ambient + 10 K"]
     assert by_change["load + 10 %"] < 0.95

@@ -23,7 +23,7 @@ from tyrefem.cli.shell import shell
 Tick = Callable[[str, float, float], None]
 #: Time between the lines without a terminal, s.
 EVERY = 60.0
-#: A remaining time is told after so many seconds of a stage.
+#: A remaining time is shown after so many seconds of a stage.
 SETTLED = 2.0
 
 

@@ -32,7 +32,7 @@ Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 #: Requirements of a life on the study.
 NEEDS = Requirements("a fatigue life")
-#: Longest life that is told, km: a longer one, also of points without cycle, counts as this.
+#: Longest life that is reported, km: a longer one, also of points without cycle, counts as this.
 LONGEST_KM = 1e12
 #: Points whose planes are searched together.
 TOGETHER = 64

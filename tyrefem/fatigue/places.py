@@ -12,7 +12,7 @@ from tyrefem.fatigue.life import LifeData
 from tyrefem.geometry.place_names import place
 
 Array = NDArray[np.float64]
-#: Places that are told; places of one region are at least this far apart, m.
+#: Places that are reported; places of one region are at least this far apart, m.
 COUNT, APART = 10, 10e-3
 #: A place at most this far along the meridian from where its region ends is "at the edge", m.
 EDGE = 6e-3

@@ -235,7 +235,7 @@ ANSWERS: dict[str, Keys] = {
         "sensitivity": "list: Shortest life for other inputs.",
         "cards": "written: Region -> its [fatigue] in SI; keys as in schemas/material.json.",
         "mesh": "table: Mesher and size; counts of the mechanical mesh.",
-        "tolerance_K": "number: Of the time steps of the run.",
+        "tolerance_K*": "number: Of the time steps of the run; missing at a given temperature.",
     },
     "wear": {
         **_STUDY, **_FOLDER, **_VERSIONS, **_INPUT, **_MESH, "about": "text: What is computed.",

@@ -23,7 +23,7 @@ from tyrefem.quantity import Ramp
 from tyrefem.simulation.effect_states import EffectStates
 
 GAS, RIM = "contained-air", "rim"
-#: Places of sets of points, by section: tyres of one section are asked for the same points.
+#: Places of sets of points, by section: tyres of one section have the same points.
 _PLACES: Cache[tuple[NDArray[np.float64], NDArray[np.float64]]] = Cache(size=128)
 
 Array = NDArray[np.float64]

@@ -25,9 +25,9 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 #: A share of the heat is stated if it differs from zero by more than this many standard deviations.
 CLEAR = 2.0
-#: From this ratio on heats are told as "2.5 times the heat".
+#: From this ratio on heats are written as "2.5 times the heat".
 TIMES = 2.5
-#: Another strain energy is told if it explains more than this share of the deviation.
+#: Another strain energy is reported if it explains more than this share of the deviation.
 MOST = 0.5
 
 

@@ -39,7 +39,7 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 #: Tyres and wheels whose compliances a process keeps, and rolling states, which are a hundred times smaller.
 TYRES, WHEELS, STATES = 2, 2, 64
-#: Least speed, m/s, at which friction is asked for its coefficient.
+#: Least speed, m/s, at which the coefficient of friction is evaluated.
 SLOWEST = 0.1
 
 
