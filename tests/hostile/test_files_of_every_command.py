@@ -64,6 +64,9 @@ def _folder(command: Command, place: Path, capfd: pytest.CaptureFixture[str]) ->
     assert summary["files"]
     for name in summary["files"]:
         assert (place / name).is_file()
+    if command.of_study:
+        assert summary["input"]["section"]
+        assert (place / "study.toml").is_file()
     # A file that was changed since is the user's.
     mine = place / summary["files"][0]
     mine.write_bytes(b"mine")
@@ -85,6 +88,8 @@ def _folder(command: Command, place: Path, capfd: pytest.CaptureFixture[str]) ->
 
 def _file(command: Command, file: Path, capfd: pytest.CaptureFixture[str]) -> None:
     assert file.is_file()
+    if command.of_study:
+        assert file.with_suffix(".toml").is_file()
     file.write_bytes(b"mine")
     assert "--force" in _refused(command, file, capfd)
     assert "is a folder" in _refused(command, Path(), capfd)
