@@ -85,7 +85,7 @@ def processes(count: int, begin: Callable[..., None] | None = None, *given: Any)
 
 
 def _exit_codes() -> list[int | None]:
-    """Exit codes of the workers of a broken pool. The pool's thread, too, waits for them: only one of both sees the exit."""
+    """Exit codes of the workers of a broken pool. Its thread waits for them, too: only one of both sees the exit."""
     until = time.monotonic() + 2.0
     while (codes := [each.exitcode for each in _STARTED]) and None in codes and time.monotonic() < until:
         time.sleep(0.02)

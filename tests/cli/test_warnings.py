@@ -142,3 +142,15 @@ def test_a_sweep_warns_of_a_factor_as_a_single_run_does(capfd: pytest.CaptureFix
         assert main(words) == 0
         (line,) = lines(capfd)
         assert "section.parameters.thickness_scale.body-ply: 0.8 changes the area of 'body-ply' by -10 %" in line
+
+
+def test_check_of_a_campaign_warns_of_its_cases_as_of_a_study(here: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    """Also of an effect beside a strain law that presses the tyre itself."""
+    text = library.find("study", NASA).read_text(encoding="utf-8")
+    effect = '[[effects]]\nname = "pressure-rise"\nrise = 0.1\n'
+    (here / "study.toml").write_text(f'cases = "cases.csv"\n{without_line(text)}\n{effect}', encoding="utf-8")
+    (here / "cases.csv").write_text("name,mechanics.strain\npressed,fem\n", encoding="utf-8")
+    assert main(["check", "study.toml"]) == 0
+    (line,) = lines(capfd)
+    assert "effects.pressure-rise: " in line
+    assert line.endswith("the strain law is 'fem'")

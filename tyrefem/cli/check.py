@@ -145,6 +145,7 @@ def _card(path: Path) -> str:
         return f"a material card, {card.title}"
     from tyrefem.api import study
     from tyrefem.compare.study_check import check_study
+    from tyrefem.mechanics.cautions import warnings_of
 
     checked = study(str(path.resolve()))
     if checked.is_campaign:
@@ -153,7 +154,7 @@ def _card(path: Path) -> str:
         for case in campaign.cases:
             study_of_case = campaign.case_study(case)
             check_study(study_of_case)
-            warned += warn(study_of_case.warnings, warned)
+            warned += warn(warnings_of(study_of_case), warned)
         return f"a campaign of {counted(len(campaign.cases), 'case')}"
     tables = check_study(checked)
     warn(checked.warnings)

@@ -18,9 +18,9 @@ from tyrefem.reduced.model import NotReducibleError, ReducedModel
 from tyrefem.reduced.packed_model import PackedModel, pack
 from tyrefem.reduced.shapes import shape_numbers
 from tyrefem.reduced.training import ReducedFineness
-from tyrefem.reduced.training_rounds import ProgressCallback, Training, check_reducible
+from tyrefem.reduced.training_rounds import Training, check_reducible
 from tyrefem.reduced.training_tasks import FullRun
-from tyrefem.variants.execution import SweepSettings
+from tyrefem.variants.execution import ProgressCallback, SweepSettings
 from tyrefem.variants.outcomes import Answered, NotReducible
 from tyrefem.variants.plan import Plan
 from tyrefem.variants.samples import changes_at

@@ -27,6 +27,7 @@ from tyrefem.reduced.training_tasks import (
     perform_full_run,
     perform_press,
 )
+from tyrefem.variants.execution import ProgressCallback
 from tyrefem.variants.outcomes import Failed, NotReducible
 from tyrefem.variants.plan import Plan
 from tyrefem.variants.samples import changes_at
@@ -34,9 +35,6 @@ from tyrefem.variants.schedulers import Result, Scheduler
 from tyrefem.variants.task import Task
 
 Array = NDArray[np.float64]
-
-
-ProgressCallback = Callable[[str, int, int], None]
 
 
 #: Variants corrected by residuals in a round: per number that varies, and at least.
