@@ -13,6 +13,7 @@ from tyrefem.conduction.balance import HeatBalance
 from tyrefem.conduction.budget import Tally
 from tyrefem.conduction.errors import SolverError
 from tyrefem.conduction.field import Peak
+from tyrefem.conduction.highest_possible import HighestPossible
 from tyrefem.conduction.rosenbrock import Step
 from tyrefem.conduction.stage_matrix import StageMatrices
 from tyrefem.conduction.terms import State
@@ -55,6 +56,7 @@ class Integration:
         self._regions = regions
         self._low = float(times[0])
         self._peaks = [(-math.inf, 0, 0.0)] * len(regions)
+        self._bound = HighestPossible(balance, tolerance)
 
     def run(self, progress: Callable[[float], None] | None) -> None:
         """Integrate phase after phase."""
@@ -69,6 +71,7 @@ class Integration:
         self._jump(low)
         b.balance_massless(low, self.y.u, self.y.g)
         b.freeze(low, self.y)
+        self._bound.begin(low, self.y)
         self._update_peaks(first, self.y)
         t, h = first, self._first_step(low, last - first)
         while t < last:
@@ -126,6 +129,7 @@ class Integration:
         due = np.searchsorted(self.times, t_new, side="right")
         end = step.at(1.0)
         b.balance_massless(seen, end.u, end.g)
+        self._bound.advance(seen, end)
         for i in range(n, due):
             theta = (self.times[i] - t) / step.h if self.times[i] < t_new else 1.0
             self._output(step, theta, end if theta >= 1.0 else None, seen)
@@ -155,12 +159,13 @@ class Integration:
         )
 
     def _update_peaks(self, t: float, y: State) -> None:
-        """Update the hottest points."""
+        """Update the hottest points: temperatures above the bound are those of elements that overshoot."""
         for j, dofs in enumerate(self._regions):
             u = y.u if dofs is None else y.u[dofs]
             i = int(np.argmax(u))
-            if u[i] > self._peaks[j][0]:
-                self._peaks[j] = (float(u[i]), i if dofs is None else int(dofs[i]), t)
+            highest = min(float(u[i]), self._bound.value)
+            if highest > self._peaks[j][0]:
+                self._peaks[j] = (highest, i if dofs is None else int(dofs[i]), t)
 
     def peaks(self) -> list[Peak]:
         """Hottest point of the body, then of every region."""
