@@ -56,7 +56,7 @@ def test_bias_sizes_of_width_and_rim_are_refused_as_such(size: str) -> None:
 
 
 def test_a_bias_truck_size_names_the_tubeless_size_that_replaces_it() -> None:
-    with pytest.raises(InputError, match="11R22.5 replaces this one"):
+    with pytest.raises(InputError, match=r"11R22\.5 replaces this one"):
         parse_size("10.00-20")
 
 
