@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
+from collections.abc import Mapping
 
 import numpy as np
 import pytest
@@ -46,7 +47,14 @@ def test_the_amplitude_of_the_cards_is_their_modulus() -> None:
     assert stands.lateral == pytest.approx(rolls.lateral, rel=1e-9)
 
 
-def test_a_longer_push_meets_softer_rubber() -> None:
+def test_a_longer_push_meets_softer_rubber(monkeypatch: pytest.MonkeyPatch) -> None:
+    made, points = [], StandingTyre._points
+
+    def noted(stands: StandingTyre, amplitudes: Mapping[str, float]) -> TreadInfluence:
+        made.append(tuple(amplitudes.items()))
+        return points(stands, amplitudes)
+
+    monkeypatch.setattr(StandingTyre, "_points", noted)
     softest, stiffest = tyre().stiffness(0.1).longitudinal, tyre().stiffness(1e-5).longitudinal
     short, strains = tyre().pushed(1e-5, 0)
     longer, strained = tyre().pushed(2e-3, 0)
@@ -55,6 +63,8 @@ def test_a_longer_push_meets_softer_rubber() -> None:
     # A sidewall 0.1 m long is sheared by about a hundredth per millimetre.
     assert 0.003 < strained["sidewall"] < 0.05
     assert strains["sidewall"] < 2e-4
+    # A pass asks for stiffness and strains of one compliance, which takes seconds.
+    assert len(made) == len(set(made)) > 2
 
 
 def test_a_push_is_positive_and_an_amplitude_too() -> None:

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
+from tyrefem.cache import Cache
 from tyrefem.errors import InputError
 from tyrefem.materials.card import strain_laws
 from tyrefem.materials.strain_dependence import StrainDependence
@@ -21,6 +22,7 @@ from tyrefem.mechanics.footprint.strain_amplitude import WEIGHTS
 from tyrefem.mechanics.rolling.contact_body import COMPONENTS, ContactBody
 from tyrefem.mechanics.rolling.friction import OPEN, States
 from tyrefem.mechanics.rolling.rolled import RolledTyre
+from tyrefem.mechanics.rolling.rolling_grid import RollingGrid
 from tyrefem.mechanics.rolling.section_fields import SectionFields
 from tyrefem.mechanics.rolling.tread_influence import TreadInfluence
 
@@ -34,6 +36,8 @@ DIRECTIONS = (0, 1)
 ANGLES = 32
 #: Passes, and relative change of a region's modulus that ends them.
 PASSES, CLOSE = 6, 0.02
+#: Compliances that are kept: one of a pass, asked for its stiffness and its strains, and one that pushes begin with.
+KEPT = 2
 #: Smallest amplitude of a region, against a division by zero.
 SMALLEST = 1e-6
 
@@ -141,13 +145,23 @@ class StandingTyre(Brief):
         stiffening = {region: float(law.stiffening(amplitudes[region])) for region, law in self.laws.items()}
         return TreadInfluence(TreadCompliance(Harmonics(dynamic_state(self.pressed.tyre, stiffening))))
 
+    @functools.cached_property
+    def _grids(self) -> Cache[RollingGrid]:
+        """Amplitudes of the regions -> the contact's points with the moduli of these amplitudes."""
+        return Cache(KEPT)
+
+    def _grid(self, amplitudes: Mapping[str, float]) -> RollingGrid:
+        """The contact's points with the moduli of these amplitudes."""
+        key = tuple(sorted(amplitudes.items()))
+        return self._grids.get(key, lambda: self.rolled.grid.under(self._points(amplitudes)))
+
     def _contact(self, amplitudes: Mapping[str, float]) -> tuple[ContactBody, States]:
-        grid, axes = self.rolled.grid.under(self._points(amplitudes)), self.rolled.axes
+        grid, axes = self._grid(amplitudes), self.rolled.axes
         return ContactBody(grid.compliance(axes), grid.upstream, grid.turns(axes)), self.rolled.contact.states
 
     def _amplitudes(self, forces: Array, amplitudes: Mapping[str, float]) -> dict[str, float]:
         """Region -> amplitude at which it stores as much as its points under forces (k, 3), N."""
-        grid = self.rolled.grid.under(self._points(amplitudes))
+        grid = self._grid(amplitudes)
         vectors = np.einsum("kax,ka->kx", self.rolled.axes, forces).reshape(len(grid.angles), -1, 3)
         fields = SectionFields.of(grid, np.einsum("jpx,jcx->jpc", vectors, grid.wheel_axes))
         one_side = np.pi * np.linspace(0, 1, ANGLES + 1) ** 2
