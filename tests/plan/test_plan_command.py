@@ -14,6 +14,7 @@ import pytest
 import tomli_w
 
 import tyrefem as tf
+from tyrefem.api.diagnosis import Diagnosis
 from tyrefem.cli import main
 from tyrefem.diagnose.data.sensitivities import responses, unknowns_of
 from tyrefem.diagnose.forward.evaluations import Evaluations
@@ -71,9 +72,15 @@ def owner(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def diagnosed(owner: Path) -> Path:
-    """The folder of a diagnosis of the table."""
-    tf.study(owner).diagnose(owner / "table.csv", largest=1, looks=1).save(owner / "out")
+def diagnosis(owner: Path) -> Diagnosis:
+    """The diagnosis of the table."""
+    return tf.study(owner).diagnose(owner / "table.csv", largest=1, looks=1)
+
+
+@pytest.fixture(scope="module")
+def diagnosed(diagnosis: Diagnosis, owner: Path) -> Path:
+    """The folder of the diagnosis."""
+    diagnosis.save(owner / "out")
     return owner / "out"
 
 
@@ -97,10 +104,11 @@ def test_the_command_writes_its_files(owner: Path, tmp_path: Path, capsys: pytes
     assert "data:image/png" in (out / "plan.html").read_text(encoding="utf-8")
 
 
-def test_after_a_diagnosis_its_folder_and_its_object_give_the_same_plan(owner: Path, diagnosed: Path) -> None:
+def test_after_a_diagnosis_its_folder_and_its_object_give_the_same_plan(
+    owner: Path, diagnosed: Path, diagnosis: Diagnosis
+) -> None:
     study = tf.study(owner)
     of_folder = study.plan(diagnosed)
-    diagnosis = study.diagnose(owner / "table.csv", largest=1, looks=1)
     of_object = study.plan(diagnosis)
     assert of_folder.beliefs.verdict == diagnosis.verdict
     assert [entry.key for entry in of_folder.beliefs.sets] == [entry.key for entry in of_object.beliefs.sets]
