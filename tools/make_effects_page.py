@@ -99,7 +99,9 @@ A [diagnosis](diagnosis.md#its-law-over-the-runs) that finds heat of unknown ori
 the law of the heat, its amplitude and standard deviation, and the source "inferred from ...".
 `tyrefem diagnose --effects FOLDER` judges it as any other effect.
 
-`Prior` takes unit, meaning, sd, lower and upper bound. The method is one of the ports of `tyrefem.effects.Effect`;
+`Prior` takes unit, meaning, sd, lower and upper bound. A parameter without a value at which the effect is absent, such
+as a place or a period, has a start of the fit, which is its default:
+`Prior("s", "period", 50.0, 1.0, 1e4, start=60.0, amplitude=False)`. The method is one of the ports of `tyrefem.effects.Effect`;
 `tyrefem/effects/tyre.py` lists what a port may ask of its `tyre`. A choice (a sensor, a side) is a field with
 `Field(description=..., examples=[...])`. `of_drive: ClassVar[bool] = True` says that films, surroundings and rim
 depend on time through the drive alone: reduced models then evaluate the effect once per phase.
