@@ -13,6 +13,7 @@ from suitable import COARSE
 import tyrefem as tf
 from tyrefem.conduction.fixed_steps import fixed_step_solution
 from tyrefem.conduction.sensitivity import stage_times
+from tyrefem.diagnose.settings import DiagnosisSettings
 from tyrefem.errors import InputError, PluginWarning
 from tyrefem.plugins import registry
 from tyrefem.reduced.balance import reduced_balance
@@ -190,7 +191,8 @@ def test_a_diagnosis_names_an_effect_with_a_state(tmp_path: Path) -> None:
     noise[:, 0] = 0.0
     table = (readings + noise).rename(columns=lambda name: "time [s]" if name == "time_s" else f"{name} [degC]")
     table.to_csv(tmp_path / "measured.csv", index=False)
-    diagnosis = study.diagnose(tmp_path / "measured.csv", largest=1, looks=1, rerun=False)
+    quick = DiagnosisSettings(mesh_size="12 mm", largest=1, looks=1, heat_widths=(3.0,), discrepancy_sizes=(1.0,))
+    diagnosis = study.diagnose(tmp_path / "measured.csv", settings=quick, rerun=False, verdict_only=True)
     assert diagnosis.verdict == "identified"
     names = {effect.name for effect in diagnosis.study.effects}
     assert "brake-disc" in names
