@@ -102,6 +102,7 @@ def test_errors_of_the_readings_are_told_only_where_heat_explains_less(case: Cas
     assert ("heat is missing in mid sidewall" in first) is heat
     assert ("errors of the readings would explain it" in first) is not heat
     assert ("Errors of the readings would explain it." in words) is not heat
+    assert ("state such errors if readings or model may have them" in headline(d)[2]) is not heat
     may = (
         "Beside errors of the readings these effects may act"
         if heat

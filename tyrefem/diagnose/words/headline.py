@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from tyrefem.brief import Brief
 from tyrefem.compare.omitted import ERROR
 from tyrefem.compare.sensors import OUTSIDE_THE_RUBBER
-from tyrefem.diagnose.beside.discrepancy import ENERGY, HEAT
+from tyrefem.diagnose.beside.discrepancy import ENERGY, HEAT, READINGS
 from tyrefem.diagnose.fitting.materiality import Movement, largest_change
 from tyrefem.diagnose.fitting.pulls import Pull, improbable_pulls
 from tyrefem.diagnose.heat.sources import STATED, UnknownSource
@@ -23,6 +23,7 @@ from tyrefem.diagnose.words.heat import course_words, source_place
 from tyrefem.diagnose.words.partly import (
     besides_words,
     explaining_words,
+    heat_before_errors,
     least_probable,
     least_words,
     or_outside_words,
@@ -195,9 +196,15 @@ def _partly(d: DiagnosisData) -> tuple[str, str, str]:
 
 
 def _rest(d: DiagnosisData) -> str:
-    """How to go on with what no effect explains: by strain laws, or by the draft effect; empty without either."""
-    if d.robustness is not None and d.robustness.models[0].name == ENERGY:
+    """How to go on with what no effect explains: by strain laws, stated errors, or the draft effect; else empty."""
+    leading = d.robustness.models[0] if d.robustness is not None else None
+    if leading is not None and leading.name == ENERGY:
         return "compare strain laws and tan delta where the heat differs (tyrefem strain STUDY)"
+    if leading is not None and leading.name == READINGS and not leading.refuted and not heat_before_errors(d):
+        return (
+            f"state such errors if readings or model may have them (discrepancy in [diagnosis], about {leading.size:g} "
+            "K), and diagnose again"
+        )
     files = list(draft_effects(d))
     if not files:
         return ""

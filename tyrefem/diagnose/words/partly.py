@@ -97,7 +97,7 @@ def explaining_words(d: DiagnosisData) -> str:
     and the heat has a place.
     """
     leading = d.robustness.models[0] if d.robustness else None
-    if leading is None or _heat_before_errors(d):
+    if leading is None or heat_before_errors(d):
         return ""
     if leading.name == NONE or leading.p_value < LEAST_P:
         return _energy_explains(d)
@@ -107,7 +107,7 @@ def explaining_words(d: DiagnosisData) -> str:
     return f"{words} would explain it{f': {shares}' if shares else ''}."
 
 
-def _heat_before_errors(d: DiagnosisData) -> bool:
+def heat_before_errors(d: DiagnosisData) -> bool:
     """Whether errors of the readings are the most probable model, and clear heat has a larger evidence than they."""
     robust, heat = d.robustness, d.missing.over_time
     if robust is None or heat is None or not heat.clear or robust.models[0].name != READINGS:
@@ -160,7 +160,7 @@ def beside_it_words(d: DiagnosisData) -> str:
     if d.verdict == PARTLY:
         return f"Perhaps these act, too: {shown}. They are not sure enough to be named."
     may = f"If that holds, these effects may act beside it: {shown}"
-    if _heat_before_errors(d) and d.robustness is not None:
+    if heat_before_errors(d) and d.robustness is not None:
         may = f"Beside {d.robustness.models[0].words} these effects may act: {shown}"
     return f"{may}. It is not sure, so none is named."
 
