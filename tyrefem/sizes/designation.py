@@ -152,7 +152,7 @@ def parse_size(text: object) -> TyreSize:
     if match := _WIDTH_AND_RIM.fullmatch(plain):
         raise InputError(
             f"'{text}' is a bias tyre of which the size gives width and rim alone, which has no rules here; an "
-            f"aircraft tyre is written diameter x width - rim, such as H44.5x16.5-21; a road tyre as a "
+            "aircraft tyre is written diameter x width - rim, such as H44.5x16.5-21; a road tyre as a "
             f"radial{_tubeless(match)}",
             field="size",
         )
