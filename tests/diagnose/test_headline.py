@@ -26,6 +26,7 @@ from tyrefem.diagnose.beside.discrepancy import ENERGY, HEAT, NONE
 from tyrefem.diagnose.beside.robustness import Robustness, UnderDiscrepancy
 from tyrefem.diagnose.fitting.support import LeftOut, Support
 from tyrefem.diagnose.heat.sources import UnknownSource
+from tyrefem.diagnose.next_experiment import compared_sets
 from tyrefem.diagnose.numbers import percent
 from tyrefem.diagnose.unknowns.heat_patches import OUTER
 from tyrefem.diagnose.unknowns.unknown import Unknown
@@ -411,6 +412,17 @@ def test_confounded_says_the_sets_in_words_and_what_would_decide(case: Case) -> 
     wrong, sure, _ = headline(certain(case.diagnosis))
     assert wrong.startswith("The road is warmer than stated")
     assert "with all readings 99.0 %" in sure
+
+
+def test_the_next_experiment_is_about_the_largest_doubt(case: Case) -> None:
+    """Hot road and sun at 69 %, the hot road alone at 28 %: the sun is in doubt, not a rare third effect."""
+    sets = {("hot-road", "sun"): 0.69, ("hot-road",): 0.28, ("hot-road", "sensor-offset (crown-outer)"): 0.03}
+    d = judged(case.diagnosis, CONFOUNDED, sets)
+    assert [entry.key for entry in compared_sets(d.judgement)] == ["hot-road + sun", "hot-road"]
+    # A set that contains the leading one names its effects, too.
+    sets = {("hot-road",): 0.6, ("hot-road", "sun"): 0.3, ("sun",): 0.1}
+    d = judged(case.diagnosis, CONFOUNDED, sets)
+    assert [entry.key for entry in compared_sets(d.judgement)] == ["hot-road", "sun"]
 
 
 def test_unexplained_says_where_heat_is_missing_and_which_sensor_to_check(case: Case) -> None:

@@ -48,7 +48,7 @@ def next_experiment(
     -------
     ``between`` (two sets), ``sensors`` and ``drives`` in order of gain; empty if only one set is left.
     """
-    sets = _competing_sets(judgement)
+    sets = compared_sets(judgement)
     if len(sets) < 2:
         return {}
     fits = [entry.fit or fit_of(entry.members) for entry in sets]
@@ -70,12 +70,14 @@ def next_experiment(
     }
 
 
-def _competing_sets(judgement: Judgement) -> list[RankedSet]:
-    """The best set and the next set that is neither its subset nor its superset."""
+def compared_sets(judgement: Judgement) -> list[RankedSet]:
+    """The best set and the most probable one that lacks one of its effects, as a plan compares them.
+
+    If all others contain it: the next one.
+    """
     sets = [entry for entry in judgement.credible if not entry.outside]
     for other in sets[1:]:
-        ours, theirs = set(sets[0].members), set(other.members)
-        if not ours <= theirs and (not theirs or not theirs <= ours):
+        if not set(sets[0].members) <= set(other.members):
             return [sets[0], other]
     return sets[:2]
 
