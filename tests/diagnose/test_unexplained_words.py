@@ -13,7 +13,7 @@ from hidden import Case
 from made_up import unexplained
 
 from tyrefem.diagnose import DiagnosisData
-from tyrefem.diagnose.beside.discrepancy import ENERGY, READINGS
+from tyrefem.diagnose.beside.discrepancy import ENERGY, HEAT, READINGS
 from tyrefem.diagnose.beside.robustness import Robustness, UnderDiscrepancy
 from tyrefem.diagnose.blind.blind_case import outcome_row
 from tyrefem.diagnose.fitting.fits import FittedSet
@@ -132,3 +132,13 @@ def test_contained_air_has_no_place_to_check(case: Case) -> None:
     assert "its channel and the drive" in headline(of_air)[2]
     assert "its place" not in headline(of_air)[2]
     assert "its channel, the run's drive, and the stated uncertainties" in " ".join(verdict_words(of_air))
+
+
+def test_heat_that_explains_the_deviation_is_told_with_its_place(case: Case) -> None:
+    d = with_models(case.diagnosis, left=0.2, leading_p=0.5)
+    assert d.robustness is not None
+    first, *others = d.robustness.models
+    models = (replace(first, name=HEAT, words="heat of unknown origin"), *others)
+    d = with_source(replace(d, robustness=replace(d.robustness, models=models, log_evidence=-500.0)), 20.0)
+    assert "heat is missing in mid sidewall" in headline(d)[0]
+    assert "heat of unknown origin would explain it" not in headline(d)[0]

@@ -101,6 +101,9 @@ def explaining_words(d: DiagnosisData) -> str:
         return ""
     if leading.name == NONE or leading.p_value < LEAST_P:
         return _energy_explains(d)
+    if leading.name == HEAT:
+        # Place and amount of the heat stand in its own sentences.
+        return ""
     fit = leading.fits.get(())
     shares = energy_words(d, fit) if leading.name == ENERGY and fit is not None else ""
     words = f"{leading.words[0].upper()}{leading.words[1:]}"
