@@ -57,7 +57,7 @@ def kept_inside(tyre: TyreMesh, points: ArrayLike) -> Array:
     >>> from tyrefem.geometry import load
     >>> from tyrefem.geometry.meshing import build
     >>> tyre = build(load("nasa-22x5.5-8pr"), size=8e-3)
-    >>> points = tyre.section.place([0.004, 0.004], tyre.section.rubber_thickness([0.004]) - [0.0, 1e-4])
+    >>> points = tyre.section.place([0.03, 0.03], tyre.section.rubber_thickness([0.03]) - [0.0, 1e-4])
     >>> moved = np.linalg.norm(kept_inside(tyre, points) - points, axis=1)
     >>> bool(1e-5 < moved[0] < 1e-4), float(moved[1])
     (True, 0.0)
