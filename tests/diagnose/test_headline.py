@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import pytest
-from hidden import RUNS, Case
+from hidden import HASTY, RUNS, Case
 from made_up import confounded, judged, unexplained
 
 from tyrefem.api.diagnosis import Diagnosis
@@ -143,7 +143,7 @@ def test_readings_mostly_outside_the_drive_come_first(case: Case) -> None:
         columns = {each.sensor: each.measured for each in run.sensors}
         times = run.sensors[0].times
         runs.append(MeasuredRun(run.name, times * 10.0, pd.DataFrame(columns), channels=("torque [N*m]",)))
-    d = case.study.diagnose(runs, largest=1, looks=1, known=case.diagnosis.gap.responses)
+    d = case.study.diagnose(runs, settings=HASTY, known=case.diagnosis.gap.responses, rerun=False, verdict_only=True)
     wrong, _, step = headline(d)
     assert wrong.startswith(f"ERROR: run '{runs[0].name}': ")
     assert "measured times lie outside the simulated span 0 to" in wrong
