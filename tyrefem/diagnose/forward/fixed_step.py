@@ -166,21 +166,22 @@ class FixedStepRun:
 
     def _shift_inside(self, shift: Array) -> Array:
         """(n_sensors, 2) m: the shift to where a moved sensor is read, which in the mesh's edge is a sagitta deeper."""
-        section, places = self.tyre.study.section, np.array(list(self.study.stated_places.values())).reshape(-1, 2)
-        stated = np.column_stack(section.locate(places))
+        section, read = self.tyre.study.section, self._moved(shift)
+        at_edge = np.linalg.norm(section.place(*(self._stated + shift).T) - read, axis=1) > 1e-9
+        return np.where(at_edge[:, None], np.column_stack(section.locate(read)) - self._stated, shift)
+
+    @cached_property
+    def _stated(self) -> Array:
+        """(n_sensors, 2) m: (s, depth) of the sensors, with the displacements that the study's effects have."""
+        places = np.array(list(self.study.stated_places.values())).reshape(-1, 2)
         known = np.array(list(displacements(self.study).values())).reshape(-1, 2)
-        wanted = stated + known + shift
-        read = self._moved(shift)
-        at_edge = np.linalg.norm(section.place(*wanted.T) - read, axis=1) > 1e-9
-        return np.where(at_edge[:, None], np.column_stack(section.locate(read)) - stated - known, shift)
+        return np.column_stack(self.tyre.study.section.locate(places)) + known
 
     def _moved(self, shifts: Array) -> Array:
         """(..., n_sensors, 2) m: (r, z) of the sensors, moved by ``shifts`` (..., n_sensors, 2) m and kept inside."""
         section = self.tyre.study.section
-        s, depth = section.locate(np.array(list(self.study.stated_places.values())).reshape(-1, 2))
-        known = np.array(list(displacements(self.study).values())).reshape(-1, 2)
-        along, deeper = np.moveaxis(known + shifts, -1, 0)
-        places = section.place(*section.clamp((s + along).ravel(), (depth + deeper).ravel()))
+        s, depth = np.moveaxis(self._stated + shifts, -1, 0)
+        places = section.place(*section.clamp(s.ravel(), depth.ravel()))
         return kept_inside(self.tyre.mesh, places).reshape(shifts.shape)
 
 
