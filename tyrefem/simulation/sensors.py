@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import solve_banded
 
 if TYPE_CHECKING:
+    from tyrefem.effects.effect import Effect
     from tyrefem.inputs.study import StudyData
 
 Array = NDArray[np.float64]
@@ -58,7 +59,8 @@ def true_places(study: StudyData) -> dict[str, tuple[float, float]]:
 
 def displacements(study: StudyData) -> dict[str, tuple[float, float]]:
     """Distance of every sensor from its stated place by the study's effects, along the meridian and in depth, m."""
-    moves = {name: [effect.displacement(name) for effect in study.effects] for name in study.stated_places}
+    effects = _acting_at("displacement", study)
+    moves = {name: [effect.displacement(name) for effect in effects] for name in study.stated_places}
     return {name: (sum(along for along, _ in each), sum(deeper for _, deeper in each)) for name, each in moves.items()}
 
 
@@ -68,9 +70,9 @@ def recorded(study: StudyData, times: Array, temperatures: ArrayLike) -> dict[st
     Lag first, then the effects of measurement: a further lag, swapped channels, offset, offset of the logger's clock.
     """
     values = np.asarray(temperatures, dtype=float)
-    effects = study.effects
+    slower, swapping, off = (_acting_at(port, study) for port in ("lag_addend", "channel", "offset"))
     lags = {
-        name: sensor.lag + sum(effect.lag_addend(name) for effect in effects) for name, sensor in study.sensors.items()
+        name: sensor.lag + sum(effect.lag_addend(name) for effect in slower) for name, sensor in study.sensors.items()
     }
     # Sensors with one lag are read together.
     of_lag: dict[float, list[str]] = {}
@@ -84,16 +86,21 @@ def recorded(study: StudyData, times: Array, temperatures: ArrayLike) -> dict[st
     readings = {}
     for name in lags:
         channel = name
-        for effect in effects:
+        for effect in swapping:
             channel = effect.channel(channel)
-        column = read[channel] + sum(effect.offset(name) for effect in effects)
+        column = read[channel] + sum(effect.offset(name) for effect in off)
         readings[name] = logged(study, times, column)
     return readings
 
 
+def _acting_at(port: str, study: StudyData) -> list[Effect]:
+    """The study's effects that act at a port; most of a diagnosis's many effects do not act on a sensor."""
+    return [effect for effect in study.effects if effect.overrides(port)]
+
+
 def logged(study: StudyData, times: Array, temperatures: Array) -> Array:
     """Temperatures (n_times, ...) by the logger's clock, which all channels have, also contained air and rim."""
-    late = sum(effect.clock() for effect in study.effects)
+    late = sum(effect.clock() for effect in _acting_at("clock", study))
     return _later(times, temperatures, late) if late else temperatures
 
 
