@@ -159,13 +159,15 @@ class Integration:
         )
 
     def _update_peaks(self, t: float, y: State) -> None:
-        """Update the hottest points: temperatures above the bound are those of elements that overshoot."""
+        """Update the hottest points, without temperatures above the bound: those are of elements that overshoot."""
         for j, dofs in enumerate(self._regions):
             u = y.u if dofs is None else y.u[dofs]
             i = int(np.argmax(u))
-            highest = min(float(u[i]), self._bound.value)
-            if highest > self._peaks[j][0]:
-                self._peaks[j] = (highest, i if dofs is None else int(dofs[i]), t)
+            if u[i] > self._bound.value:
+                u = np.where(u > self._bound.value, -np.inf, u)
+                i = int(np.argmax(u))
+            if u[i] > self._peaks[j][0]:
+                self._peaks[j] = (float(u[i]), i if dofs is None else int(dofs[i]), t)
 
     def peaks(self) -> list[Peak]:
         """Hottest point of the body, then of every region."""

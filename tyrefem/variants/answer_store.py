@@ -119,8 +119,10 @@ def plain(value: Any) -> Any:
         return [plain(entry) for entry in value]
     if isinstance(value, np.ndarray):
         return [str(value.dtype), list(value.shape), hashlib.sha256(np.ascontiguousarray(value).data).hexdigest()]
-    # An unknown's text is long, and every question of a fit repeats dozens of them.
-    return _digest_of(value) if dataclasses.is_dataclass(value) and isinstance(value, Hashable) else repr(value)
+    # An unknown's text is long, and every question of a fit repeats dozens of them. Data that are equal only to
+    # themselves may be large, and would be kept.
+    by_value = dataclasses.is_dataclass(value) and type(value).__eq__ is not object.__eq__
+    return _digest_of(value) if by_value and isinstance(value, Hashable) else repr(value)
 
 
 @functools.lru_cache(maxsize=4096, typed=True)

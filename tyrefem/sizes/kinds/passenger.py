@@ -81,7 +81,7 @@ def _rim_and_rating(size: TyreSize, rule: Rules, pressure: float, density: float
     if inches:
         pressure = rated_flotation(size, rule)
     else:
-        spread = "extra load: 1.1 times the standard" if size.extra_load else "mean of eight sizes, 3 % either way"
+        spread = "extra load, 1.1 times a standard load" if size.extra_load else "mean of eight sizes, 3 % either way"
         words = f"reference pressure {pressure / 1e3:g} kPa ({STANDARD}); {spread}"
         pressure = rated(size, rule, density, pressure, words)
     return rim, outer, pressure
