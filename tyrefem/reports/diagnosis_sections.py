@@ -81,8 +81,7 @@ def _residuals(
         )  # fmt: skip
     drawn.beside(sorted((label for label, _ in left), key=lambda label: -label.y), -1.0)
     drawn.beside(sorted((label for label, _ in right), key=lambda label: -label.y), 1.0)
-    bar = drawn.color_bar(image, "measured - computed [K]")
-    bar.ax.set_ylabel("measured - computed, mean [K]", fontsize=FONT)
+    drawn.color_bar(image, "measured - computed, mean [K]")
     names = list(means)
     if len(names) == 2:
         for name, sign in zip(names, (-1.0, 1.0), strict=True):

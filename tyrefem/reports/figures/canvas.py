@@ -32,7 +32,7 @@ Array = NDArray[np.float64]
 #: Mean width of a letter and height of a line of text, inches.
 LETTER, LINE = 0.072, 0.185
 #: Width of the drawn section and of a colour bar with its labels, inches.
-DRAWN, BAR = 5.2, 0.85
+DRAWN, BAR = 5.2, 0.92
 
 
 @dataclass(frozen=True, eq=False)
