@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import signal
 import sys
@@ -10,7 +11,7 @@ import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import BrokenExecutor, ProcessPoolExecutor
 from contextlib import contextmanager, suppress
-from multiprocessing import active_children, current_process, parent_process, resource_tracker
+from multiprocessing import active_children, current_process, parent_process, resource_tracker, util
 from multiprocessing.context import SpawnContext, SpawnProcess
 from typing import Any
 
@@ -23,6 +24,10 @@ from tyrefem.threads import VARIABLES
 LEFT_BEHIND = "ignore:resource_tracker:UserWarning"
 
 
+#: New objects that start a collection of garbage.
+GARBAGE = 100_000
+#: Priority of what a worker does last.
+LAST = -1000
 #: Exit code of a worker that would start workers while it imports its parent's script.
 UNGUARDED = 78
 
@@ -111,11 +116,23 @@ def _begin(begin: Callable[..., None] | None, given: tuple[Any, ...]) -> None:
     # Where a signal cannot be blocked, as on Windows, it is ignored.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with_parent, daemon=True).start()
+    # As in the parent: imports make many objects and no garbage.
+    gc.set_threshold(GARBAGE)
+    # To dismantle a worker's memory object by object takes a quarter of a second.
+    util.Finalize(None, _leave, exitpriority=LAST)
     # Libraries that are loaded already, and those that the first task loads.
     threadpool_limits(1, user_api="blas")
     os.environ.update(dict.fromkeys(VARIABLES, "1"))
     if begin is not None:
         begin(*given)
+
+
+def _leave() -> None:
+    """End a worker that has nothing left to do."""
+    for stream in (sys.stdout, sys.stderr):
+        if stream is not None:
+            stream.flush()
+    os._exit(0)
 
 
 def _end_with_parent() -> None:

@@ -37,6 +37,7 @@ ALLOWED = {
     "cards/__init__.py: cache(_allowed)": "one value for every class of card",
     "cards/__init__.py: cache(_units)": "one value for every class of card",
     "effects/effect.py: cache(parameters)": "one value for every class of effect",
+    "effects/effect.py: cache(overrides)": "one value for every class of effect and port",
 }
 
 

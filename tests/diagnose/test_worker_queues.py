@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tyrefem.diagnose.forward.worker_queues import HomedTask, WorkerQueues, worker_queues
+from tyrefem.diagnose.forward.worker_queues import HomedTask, WorkerQueues, begun, started_workers, worker_queues
 
 
 def meet(folder: Path, name: str, guests: int) -> bool:
@@ -58,3 +58,17 @@ def test_the_error_of_a_task_is_raised_and_the_workers_end() -> None:
 def test_no_tasks_have_no_results() -> None:
     with worker_queues(1) as queues:
         assert list(queues.results({})) == []
+
+
+def test_a_result_that_is_begun_early_comes_from_another_process() -> None:
+    with started_workers(2) as workers:
+        process = begun(workers, os.getpid)
+        assert process() != os.getpid()
+    with started_workers(1) as workers:
+        assert begun(workers, os.getpid)() == os.getpid()
+
+
+def test_what_a_worker_has_printed_is_not_lost_when_it_ends(capfd: pytest.CaptureFixture[str]) -> None:
+    with worker_queues(1) as queues:
+        begun(queues, print, "tread")()
+    assert capfd.readouterr().out == "tread\n"

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from tyrefem.diagnose.fitting.selection import Strategy
     from tyrefem.diagnose.forward.drive_response import DriveResponse
     from tyrefem.diagnose.forward.evaluations import ProgressStore
+    from tyrefem.diagnose.forward.worker_queues import Workers
     from tyrefem.diagnose.settings import DiagnosisSettings
     from tyrefem.diagnose.unknowns.candidates import CandidateSpace
     from tyrefem.variants.answer_store import AnswerStore
@@ -86,7 +87,7 @@ class StudyQuestions(studies.StudyData):
         candidates: CandidateSpace | None = None,
         criterion: Criterion | None = None,
         strategy: Strategy | None = None,
-        workers: int = 1,
+        workers: Workers = 1,
         progress: Progress | None = None,
         known: Sequence[DriveResponse] | None = None,
         rerun: bool = True,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -26,6 +26,9 @@ from tyrefem.errors import InputError, nearest
 from tyrefem.interruption import keeping
 from tyrefem.output import SUMMARY, write_json
 from tyrefem.output.folder import results_folder
+
+if TYPE_CHECKING:
+    from tyrefem.api.diagnosis import Diagnosis
 
 #: More processes gain little, because the fits wait for each other.
 MOST_WORKERS = 4
@@ -66,55 +69,65 @@ def diagnose(
 
     The same command continues an interrupted one.
     """
-    from tyrefem.api import study as load
-    from tyrefem.diagnose.forward.evaluations import ProgressStore
-    from tyrefem.diagnose.options import STRATEGIES
-    from tyrefem.diagnose.workflow import NEEDS
-    from tyrefem.effects import use_effects
-    from tyrefem.inputs.origin import StudyOrigin
-    from tyrefem.reports.diagnosis import FILES
-    from tyrefem.variants.answer_store import PROGRESS
+    from tyrefem.diagnose.forward.worker_queues import started_workers
 
     if effects is not None:
-        use_effects(effects)
-    loaded = load(study, settings(changes), case)
-    NEEDS.check(loaded, table)
-    if strategy not in STRATEGIES:
-        raise InputError(f"--strategy: there is no '{strategy}'{nearest(strategy, STRATEGIES)}")
-    warn(loaded.warnings)
-    place = out or Path("results") / f"{loaded.name}-diagnosis"
-    read = [table] if table else [entry.table for entry in loaded.measured]
-    origin = StudyOrigin(loaded, simulated=True)
-    keeps = [f"{PROGRESS}*/*/*.npz"]
-    with results_folder(place, "diagnose", FILES, origin=origin, inputs=read, force=force, keeps=keeps) as folder:
-        store = ProgressStore(folder / PROGRESS)
-        with keeping(lambda: store.kept), stages() as tick:
-            tick("reading", 0, 0)
-            diagnosis = loaded.diagnose(
-                table,
-                ignore=tuple(ignore or ()),
-                rename=renamed(rename),
-                largest=largest,
-                looks=looks,
-                workers=workers or min(os.cpu_count() or 1, MOST_WORKERS),
-                progress=tick,
-                store=store,
-                reduced=reduced,
-                strategy=STRATEGIES[strategy],
-                calibration=calibration,
-            )
-            tick("drawing", 0, 0)
-            used = [candidate.name for candidate in diagnosis.candidates]
-            write_json(origin.using(used).summary(), folder / SUMMARY)
-            page = diagnosis.save(folder)
-        store.clear()
+        from tyrefem.effects import use_effects
+
+        use_effects(effects)  # workers that start later know them, too
+    # Workers import their modules while this process imports its own and reads the study.
+    with started_workers(workers or min(os.cpu_count() or 1, MOST_WORKERS)) as processes:
+        from tyrefem.api import study as load
+        from tyrefem.diagnose.forward.evaluations import ProgressStore
+        from tyrefem.diagnose.options import STRATEGIES
+        from tyrefem.diagnose.workflow import NEEDS
+        from tyrefem.inputs.origin import StudyOrigin
+        from tyrefem.reports.diagnosis import FILES, save
+        from tyrefem.variants.answer_store import PROGRESS
+
+        loaded = load(study, settings(changes), case)
+        NEEDS.check(loaded, table)
+        if strategy not in STRATEGIES:
+            raise InputError(f"--strategy: there is no '{strategy}'{nearest(strategy, STRATEGIES)}")
+        warn(loaded.warnings)
+        place = out or Path("results") / f"{loaded.name}-diagnosis"
+        read = [table] if table else [entry.table for entry in loaded.measured]
+        origin = StudyOrigin(loaded, simulated=True)
+        keeps = [f"{PROGRESS}*/*/*.npz"]
+        with results_folder(place, "diagnose", FILES, origin=origin, inputs=read, force=force, keeps=keeps) as folder:
+            store = ProgressStore(folder / PROGRESS)
+            with keeping(lambda: store.kept), stages() as tick:
+                tick("reading", 0, 0)
+                diagnosis = loaded.diagnose(
+                    table,
+                    ignore=tuple(ignore or ()),
+                    rename=renamed(rename),
+                    largest=largest,
+                    looks=looks,
+                    workers=processes,
+                    progress=tick,
+                    store=store,
+                    reduced=reduced,
+                    strategy=STRATEGIES[strategy],
+                    calibration=calibration,
+                )
+                tick("drawing", 0, 0)
+                used = [candidate.name for candidate in diagnosis.candidates]
+                write_json(origin.using(used).summary(), folder / SUMMARY)
+                page = save(diagnosis, folder, processes)
+            store.clear()
     answer_with(diagnosis.to_dict())
+    _tell(diagnosis, folder, page, store.resumed)
+
+
+def _tell(diagnosis: Diagnosis, folder: Path, page: Path, resumed: int) -> None:
+    """Print the verdict, and where its files are; ``resumed``: simulations of an interrupted diagnosis."""
     from tyrefem.diagnose.words.draft_effect import EFFECTS, draft_effects
     from tyrefem.diagnose.words.headline import QUESTIONS, headline, label
     from tyrefem.diagnose.words.sentences import missing_heat_words, noise_words
 
-    if store.resumed:
-        say(f"{store.resumed} simulations of an interrupted diagnosis were reused")
+    if resumed:
+        say(f"{resumed} simulations of an interrupted diagnosis were reused")
     for question, sentence in zip((label(diagnosis).upper(), *QUESTIONS[1:]), headline(diagnosis), strict=True):
         say(f"{question}: {sentence}")
     conformal = () if diagnosis.conformal is None else (diagnosis.conformal.words(diagnosis.judgement.ranking),)

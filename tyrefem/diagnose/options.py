@@ -15,6 +15,7 @@ from tyrefem.diagnose.fitting.selection import Strategy
 from tyrefem.diagnose.forward.drive_response import DriveResponse
 from tyrefem.diagnose.forward.evaluations import ProgressStore, WorkerModels
 from tyrefem.diagnose.forward.strain_law_study import mesh_of_law
+from tyrefem.diagnose.forward.worker_queues import Workers
 from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
 from tyrefem.diagnose.unknowns.candidates import CandidateSpace, catalogue_candidates
 from tyrefem.effects import use_effects
@@ -50,7 +51,7 @@ class Method:
 class SimulationWork:
     """Execution of the simulations of a diagnosis, see `DiagnosisOptions`; ``pool``: processes of all its looks."""
 
-    workers: int = 1
+    workers: Workers = 1
     progress: Tick | None = None
     known: Sequence[DriveResponse] | None = None
     rerun: bool = True
@@ -94,7 +95,7 @@ class DiagnosisOptions(TypedDict, total=False):
     candidates: CandidateSpace
     criterion: Criterion
     strategy: Strategy
-    workers: int
+    workers: Workers
     progress: Tick | None
     known: Sequence[DriveResponse] | None
     rerun: bool

@@ -22,6 +22,7 @@ from tyrefem.diagnose.forward.evaluations import Evaluations, evaluating, worker
 from tyrefem.diagnose.forward.forward_model import ForwardModel
 from tyrefem.diagnose.forward.multifidelity import Predictions
 from tyrefem.diagnose.forward.strain_law_study import by_law
+from tyrefem.diagnose.forward.worker_queues import number_of
 from tyrefem.diagnose.law.search import HeatLaw, heat_law
 from tyrefem.diagnose.law.signatures import law_signatures
 from tyrefem.diagnose.layout.conformal import read_calibration
@@ -69,7 +70,8 @@ def diagnose(study: StudyData, table: Table | None = None, **options: Unpack[Dia
     candidates : function: study -> effects that it may lack; default: the whole catalogue.
     criterion : quality of a set's explanation of the data: `LogEvidence` (default), `BIC`, or any `Criterion`.
     strategy : search over sets of effects: `ForwardSelection` (default), `Exhaustive`, or any `Strategy`.
-    workers : number of processes. progress : called with (description, number of the step, number of steps).
+    workers : number of processes, or `started_workers`. progress : called with (description, number of the step, number
+        of steps).
     known : responses of the runs' drives (see `responses`), for many diagnoses of one layout.
     rerun : run the amended study on its mesh at the end; otherwise ``after`` is the prediction of the fit.
     verdict_only : leave out what follows from a verdict: the law of the missing heat, and the next experiment.
@@ -170,7 +172,7 @@ def _look(
     method.strategy.check(study, candidates, settings)
     model = ForwardModel(study, tuple(run.sampling for run in runs), settings=settings)
     if work.known is None:
-        check_effort(model, f"the diagnosis of {study.name}", 1.0, work.workers)
+        check_effort(model, f"the diagnosis of {study.name}", 1.0, number_of(work.workers))
     if work.store is not None and work.store.open(model):
         work.tick(f"resuming with {work.store.resumed} finished simulations")
     unknowns, nuisance = unknowns_of(study, {name for run in runs for name in run.parts()}, in_all_runs, settings)

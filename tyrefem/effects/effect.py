@@ -200,6 +200,7 @@ class Effect(Card):
         )
 
     @classmethod
+    @functools.cache
     def overrides(cls, port: str) -> bool:
         """True if the effect acts at this port."""
         return getattr(cls, port) is not getattr(Effect, port)

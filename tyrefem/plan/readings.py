@@ -16,6 +16,7 @@ from tyrefem.diagnose.forward.evaluations import Evaluations, evaluating
 from tyrefem.diagnose.forward.forward_model import ForwardModel
 from tyrefem.diagnose.forward.multifidelity import Predictions
 from tyrefem.diagnose.forward.sampling import DriveSampling, SensorSampling
+from tyrefem.diagnose.forward.worker_queues import number_of
 from tyrefem.diagnose.layout.isolability import READING_INTERVAL
 from tyrefem.diagnose.options import SimulationWork
 from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
@@ -110,7 +111,7 @@ def planned_readings(
     model = ForwardModel(study, samplings, settings=settings)
     if work.known is None:
         _check_drives(model, drives)
-        check_effort(model, f"the plan of {study.name}", SENSITIVITIES, work.workers)
+        check_effort(model, f"the plan of {study.name}", SENSITIVITIES, number_of(work.workers))
     if work.store is not None:
         work.store.open(model)
     unknowns, presence = _columns(beliefs)

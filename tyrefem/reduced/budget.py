@@ -11,6 +11,7 @@ from tyrefem.conduction.budget import Budget, Tally
 from tyrefem.conduction.field import History, Peak, Steps
 from tyrefem.reduced.balance import ReducedBalance
 from tyrefem.reduced.boundary_data import BoundaryData
+from tyrefem.reduced.shared_product import shared_product
 
 Array = NDArray[np.float64]
 
@@ -42,7 +43,7 @@ class HeatFlows:
         if films.shape[2] > 1:
             exchanged = exchanged + (films - frozen[:, :, None]) * (self.rows @ y)
         parts = [
-            self.power @ q,
+            shared_product(self.power, q),
             *(np.broadcast_to(terms, (*terms.shape[:2], count)) for terms in (exchanged, powers)),
         ]
         return np.concatenate(parts, axis=1)

@@ -20,6 +20,7 @@ from tyrefem.geometry.meshing.sagitta import kept_inside
 from tyrefem.reduced.balance import ReducedBalance
 from tyrefem.reduced.batch import steady
 from tyrefem.reduced.budget import by_shape
+from tyrefem.reduced.shared_product import shared_product
 from tyrefem.reduced.solution import BatchSolution
 from tyrefem.simulation.sensors import true_places
 
@@ -99,7 +100,7 @@ class _Residual:
         M, K = batch.matrices
         A, A_F = K + _combined(middle, batch.films), self.K + _combined(middle, self.films)
         q = batch.heat([float(t) for t in times], states[:, :m])
-        right, right_F = batch.source_load @ q, self.source_load @ q
+        right, right_F = shared_product(batch.source_load, q), shared_product(self.source_load, q)
         right = np.concatenate([right, np.zeros((len(right), n - m, len(times)))], axis=1)
         right -= A @ states + M @ slopes
         right_F -= A_F[:, :, :n] @ states + self.M[:, :, :n] @ slopes

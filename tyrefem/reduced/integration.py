@@ -13,6 +13,7 @@ from tyrefem.errors import InputError
 from tyrefem.reduced.batch import Batch, steady
 from tyrefem.reduced.boundary_data import BoundaryData
 from tyrefem.reduced.exponential import responses
+from tyrefem.reduced.shared_product import shared_product
 from tyrefem.reduced.solution import NODES, TO_POWERS, BatchSolution, Window
 
 Array = NDArray[np.float64]
@@ -178,7 +179,7 @@ class _PhaseIntegration:
         m = self.batch.model.size
         q = self.batch.heat(data_times, y[:, :m])
         heat = np.repeat(constant, y.shape[2], axis=2) if constant.shape[2] == 1 else constant.copy()
-        heat[:, :m] += self.batch.source_load @ q
+        heat[:, :m] += shared_product(self.batch.source_load, q)
         if film_change is not None:
             heat -= self._film_change_heat(film_change, y)
         return heat, q

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from tyrefem.reduced.balance import ReducedBalance
 from tyrefem.reduced.heat_change import HeatChange
 from tyrefem.reduced.learnt_cycles import NodeEnergies
+from tyrefem.reduced.shared_product import shared_product
 
 Array = NDArray[np.float64]
 #: Range of the table of tan delta, degC, and its spacing, K.
@@ -82,8 +83,9 @@ class TabulatedHeat:
         self.table = tables.reshape(-1)
         sizes = [part.stop - part.start for part in self.model.sample_slices.values()]
         zone_of = np.repeat(np.arange(len(sizes)), sizes)
-        #: Where the table of a variant and a sample's zone begins.
-        self.first = ((np.arange(len(balances))[:, None] * len(sizes) + zone_of) * self.width).astype(np.int32)
+        #: Where the table of a variant and a sample's zone begins, (n_samples, B, 1).
+        first = (np.arange(len(balances)) * len(sizes) + zone_of[:, None]) * self.width
+        self.first = first.astype(np.int32)[:, :, None]
         self._phase_number = -1
 
     def __call__(self, times: Sequence[float], a: Array) -> Array:
@@ -91,22 +93,23 @@ class TabulatedHeat:
         losses = self._losses(times)
         if losses is None:
             return np.zeros((len(a), len(self.model.at_samples), a.shape[2]))
-        place = self.model.at_samples @ a
+        # By sample, then variant: products with the matrices of all variants are large ones.
+        place = shared_product(self.model.at_samples[None], a).transpose(1, 0, 2)
         place -= COLD
         place /= FINE
         np.clip(place, 0.0, self.width - 1.000001, out=place)
         left = place.astype(np.int32)
         place -= left
-        left += self.first[:, :, None]
+        left += self.first
         below = self.table.take(left)
         left += 1
         place *= self.table.take(left) - below
         place += below
         place *= losses
-        return place
+        return place.transpose(1, 0, 2)
 
     def _losses(self, times: Sequence[float]) -> Array | None:
-        """Energy lost per revolution x revolutions per second, (B, n_samples, 1 or k) W/m3 per unit of tan delta.
+        """Energy lost per revolution x revolutions per second, (n_samples, B, 1 or k) W/m3 per unit of tan delta.
 
         None: all tyres stand still.
         """
@@ -129,7 +132,8 @@ class TabulatedHeat:
             for column, t in enumerate(times):
                 for _, knot, weight in schedule.weights(t):
                     shares[knot, column] = weight
-            self._losses_by_times[key] = rates[:, None, :] * np.tensordot(self._energies, shares, axes=(1, 0))
+            losses = rates[:, None, :] * np.tensordot(self._energies, shares, axes=(1, 0))
+            self._losses_by_times[key] = np.ascontiguousarray(losses.transpose(1, 0, 2))
         losses = self._losses_by_times[key]
         return losses if losses.any() else None
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import tyrefem
 from tyrefem.diagnose.amend import Change, difference
+from tyrefem.diagnose.forward.worker_queues import Workers, begun
 from tyrefem.diagnose.numbers import amount, base_name, correction_amount, parameter_name, percent, run_words
 from tyrefem.diagnose.unknowns.candidates import key_of
 from tyrefem.diagnose.unknowns.unknown import Unknown
@@ -28,6 +29,7 @@ from tyrefem.mechanics.nearby_cycles import NearbyCycles
 from tyrefem.mechanics.strain_laws import strain_law
 from tyrefem.output import atomic_folder, write_json
 from tyrefem.reports.diagnosis_figures import pictures
+from tyrefem.reports.diagnosis_histories import RunHistory, history_pictures
 from tyrefem.reports.diagnosis_law import law_block
 from tyrefem.reports.diagnosis_missing import tells_missing_heat
 from tyrefem.reports.diagnosis_summary import SUMMARY, summary
@@ -50,18 +52,21 @@ SHOWN = 12
 TELLS = 0.1
 
 
-def save(d: DiagnosisData, folder: str | Path) -> Path:
+def save(d: DiagnosisData, folder: str | Path, workers: Workers = 1) -> Path:
     """Write all files of a diagnosis into a folder, each completely or not at all; return the page's path.
 
     ``verdict.json``, ``posterior.json``, ``amended.toml``, ``difference.txt``, ``where.csv``, ``histories.csv``, the
     pictures, ``diagnosis.html``, its `summary` on one page, and the draft effect in ``effects``, if a law of missing
     heat holds. A further look at the data has a folder ``again``, unless there is no gap left.
 
+    workers : processes; the first draws the histories, if they are started.
+
     Raises
     ------
     InputError : the folder cannot be written.
     """
-    folder, drawn = Path(folder), pictures(d)
+    folder = Path(folder)
+    histories = begun(workers, history_pictures, [RunHistory.of(d, number) for number in range(len(d.gap.runs))])
     with atomic_folder(folder) as temporary:
         write_json(record(d), temporary / "verdict.json")
         write_json(posterior_record(d), temporary / POSTERIOR)
@@ -70,20 +75,21 @@ def save(d: DiagnosisData, folder: str | Path) -> Path:
         (temporary / "difference.txt").write_text("\n".join([*lines, ""]) if lines else "", encoding="utf-8")
         where_table(d).to_csv(temporary / "where.csv", index=False, lineterminator="\n")
         history_table(d).to_csv(temporary / "histories.csv", index=False, lineterminator="\n")
-        for name, picture in drawn.items():
-            (temporary / name).write_bytes(picture)
         (temporary / SUMMARY).write_text(summary(d, version=tyrefem.__version__), encoding="utf-8")
         for name, text in draft_effects(d).items():
             (temporary / EFFECTS).mkdir(exist_ok=True)
             (temporary / EFFECTS / name).write_text(text, encoding="utf-8")
+        drawn = pictures(d) | histories()
+        for name, picture in drawn.items():
+            (temporary / name).write_bytes(picture)
         (temporary / PAGE).write_text(page(d, drawn, version=tyrefem.__version__), encoding="utf-8")
     if d.again is not None and d.again.verdict != NO_GAP:
-        save(d.again, folder / sentences.AGAIN)
+        save(d.again, folder / sentences.AGAIN, workers)
     return folder / PAGE
 
 
 def page(d: DiagnosisData, images: Mapping[str, bytes], *, version: str) -> str:
-    """The page's HTML; ``images``: file name -> PNG, from `tyrefem.reports.diagnosis_figures.pictures`."""
+    """The page's HTML; ``images``: file name -> PNG."""
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
     environment = Environment(

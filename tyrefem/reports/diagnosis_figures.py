@@ -1,14 +1,10 @@
-"""Pictures of a diagnosis: rms before and after, histories with both curves, probabilities."""
+"""Pictures of a diagnosis but its histories: rms before and after, probabilities; other modules have the rest."""
 
 from __future__ import annotations
 
 import math
-import re
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
-from tyrefem.diagnose.data.runs import MeasuredDrive, MeasuredSensor
 from tyrefem.diagnose.numbers import percent
 from tyrefem.diagnose.unknowns.candidates import key_of
 from tyrefem.diagnose.words.result_tables import candidate_rows, rms_table, set_rows
@@ -16,18 +12,17 @@ from tyrefem.reports.diagnosis_energy import energy_figures
 from tyrefem.reports.diagnosis_gap import AFTER, BEFORE, HELD_OUT, gap_figure
 from tyrefem.reports.diagnosis_missing import missing_figures, tells_missing_heat
 from tyrefem.reports.diagnosis_sections import residual_figures
-from tyrefem.reports.figures.phases import Phase, draw_phases, make_room
 from tyrefem.reports.figures.style import (
     FONT,
     INK,
-    QUIET,
     TITLE,
     add_axes,
     figure,
+    legend,
+    panel_title,
     png,
     short,
     tidy,
-    time_unit,
     title,
 )
 
@@ -40,8 +35,10 @@ if TYPE_CHECKING:
 
 
 def pictures(d: DiagnosisData) -> dict[str, bytes]:
-    """File name -> PNG: ``gap``, ``rms``, ``residual-map``, ``probabilities``, histories; ``missing-heat`` if
-    the verdict tells of some; ``energy-share`` if another strain energy is the most probable discrepancy.
+    """File name -> PNG: ``gap``, ``rms``, ``residual-map``, ``probabilities``; ``missing-heat`` if the verdict tells
+    of some; ``energy-share`` if another strain energy is the most probable discrepancy.
+
+    The histories are drawn by `tyrefem.reports.diagnosis_histories`.
     """
     drawn = {
         "gap.png": gap_figure(d),
@@ -52,13 +49,7 @@ def pictures(d: DiagnosisData) -> dict[str, bytes]:
     if tells_missing_heat(d):
         drawn |= missing_figures(d)
     drawn |= energy_figures(d)
-    for number, run in enumerate(d.gap.runs):
-        name = re.sub(r"[^\w.-]+", "-", run.name).strip("-.") or "run"
-        file, again = f"histories-{name}.png", 2
-        while file in drawn:
-            file, again = f"histories-{name}-{again}.png", again + 1
-        drawn[file] = histories_figure(d, number)
-    return {name: png(figure) for name, figure in drawn.items()}
+    return {name: png(each) for name, each in drawn.items()}
 
 
 # -- rms ---------------------------------------------------------------------------------------------------------------
@@ -79,13 +70,13 @@ def rms_figure(d: DiagnosisData) -> Figure:
         row, column = divmod(number, columns)
         axes = add_axes(drawn, left + column * step_x, 0.75 + (rows - 1 - row) * step_y, wide, high)
         _rms_panel(axes, table[table["run"] == run], sensors, largest)
-        axes.set_title(f"{short(run, 30)}{_held(table, run)}", fontsize=FONT + 0.5, loc="left", pad=4)
+        panel_title(axes, f"{short(run, 30)}{_held(table, run)}", size=FONT + 0.5, pad=4)
         if column:
             axes.tick_params(labelleft=False)
         if number + columns >= len(runs):
             axes.set_xlabel("rms of measured - computed [K]", fontsize=FONT)
     title(drawn, "Deviation by run and sensor", "readings, noise included")
-    _legend(drawn, [("original", BEFORE), ("amended", AFTER)], "noise")
+    _legend(drawn)
     return drawn
 
 
@@ -112,113 +103,14 @@ def _held(table: pd.DataFrame, run: str) -> str:
     return " (held out)" if bool(table.loc[table["run"] == run, "hold_out"].any()) else " (fitted)"
 
 
-def _legend(drawn: Figure, colors: list[tuple[str, str]], noise: str = "", measured: bool = False) -> None:
+def _legend(drawn: Figure) -> None:
     """One legend for all panels, at the upper right."""
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
-    handles: list[Any] = []
-    if measured:
-        handles.append(Line2D([], [], ls="", marker=".", color=QUIET, label="measured"))
-        handles += [Line2D([], [], color=color, lw=1.6, ls=_dashes(color), label=name) for name, color in colors]
-        handles.append(Patch(color=QUIET, alpha=0.2, lw=0, label=noise))
-    else:
-        handles += [Patch(color=color, label=name) for name, color in colors]
-        handles.append(Line2D([], [], color=INK, lw=1.0, ls=(0, (2, 1.2)), label=noise))
-    width, height = drawn.get_size_inches()
-    drawn.legend(
-        handles=handles, loc="upper right", bbox_to_anchor=(1 - 0.05 / width, 1 - 0.28 / height), ncols=len(handles),
-        fontsize=FONT, frameon=False, handlelength=1.6, columnspacing=1.2,
-    )  # fmt: skip
-
-
-def _dashes(color: str) -> Any:
-    return (0, (4, 1.5)) if color == BEFORE else "-"
-
-
-# -- histories ---------------------------------------------------------------------------------------------------------
-
-
-def histories_figure(d: DiagnosisData, number: int) -> Figure:
-    """Draw one run, a panel per sensor: measured readings and both curves, with the deviations of both below."""
-    run = d.gap.runs[number]
-    columns = min(3, len(run.sensors))
-    rows = math.ceil(len(run.sensors) / columns)
-    wide, high, low = 3.0 if columns > 2 else 4.2, 1.75, 0.8
-    left, step_x, step_y = 0.75, wide + 0.42, high + low + 0.72
-    drawn = figure(left + columns * step_x, rows * step_y + TITLE + 0.12)
-    divisor, unit = time_unit(_last(run))
-    spans = _spans(d, number, run)
-    phases = _phases(d, number, divisor)
-    for place, series in enumerate(run.sensors):
-        row, column = divmod(place, columns)
-        bottom = 0.5 + (rows - 1 - row) * step_y
-        lower = add_axes(drawn, left + column * step_x, bottom, wide, low)
-        upper = add_axes(drawn, left + column * step_x, bottom + low + 0.08, wide, high)
-        _history(d, number, series, upper, lower, divisor)
-        upper.set_ylim(*spans[0])
-        lower.set_ylim(*spans[1])
-        make_room(upper, phases)
-        draw_phases(upper, phases, shaded=False)
-        draw_phases(lower, phases, names=False, shaded=False)
-        upper.tick_params(labelbottom=False)
-        if column == 0:
-            upper.set_ylabel("temperature [°C]", fontsize=FONT)
-            lower.set_ylabel("measured -\ncomputed [K]", fontsize=FONT - 1)
-        else:
-            upper.tick_params(labelleft=False)
-            lower.tick_params(labelleft=False)
-        if place + columns >= len(run.sensors):
-            lower.set_xlabel(f"time [{unit}]", fontsize=FONT)
-    held = "held out: used in no fit" if run.hold_out else "fitted"
-    title(drawn, f"{run.name} ({held})", "")
-    _legend(drawn, [("original", BEFORE), ("amended", AFTER)], "noise ± 1 sd of a block", measured=True)
-    return drawn
-
-
-def _last(run: MeasuredDrive) -> float:
-    """Time of the last reading, s."""
-    return max(float(series.times[-1]) for series in run.sensors)
-
-
-def _phases(d: DiagnosisData, number: int, divisor: float) -> list[Phase]:
-    """The phases of a run's drive, up to the last reading."""
-    drive, last = d.gap.driven(number).card.drive, _last(d.gap.runs[number])
-    return [
-        (phase.name, start / divisor, min(start + phase.duration, last) / divisor)
-        for start, phase in zip(drive.starts, drive.phases, strict=True)
-        if start < last
-    ]
-
-
-def _spans(d: DiagnosisData, number: int, run: MeasuredDrive) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Common axis limits of temperature and deviation for all sensors of a run."""
-    values = np.concatenate([run.measured, d.before[number], d.after[number]])
-    left = np.concatenate([run.measured - d.before[number], run.measured - d.after[number], [0.5, -0.5]])
-    return tuple(  # type: ignore[return-value]
-        (float(curve.min() - 0.06 * np.ptp(curve)), float(curve.max() + 0.06 * np.ptp(curve)))
-        for curve in (values, left)
-    )
-
-
-def _history(d: DiagnosisData, number: int, series: MeasuredSensor, upper: Axes, lower: Axes, divisor: float) -> None:
-    run = d.gap.runs[number]
-    place = run.parts()[series.sensor]
-    t = series.block_times / divisor
-    step = max(1, math.ceil(len(series.times) / 300))
-    upper.plot(series.times[::step] / divisor, series.measured[::step], ".", color=QUIET, ms=2.6, alpha=0.8, zorder=2)
-    noise = series.noise / np.sqrt(series.sizes)
-    lower.fill_between(t, -noise, noise, color=QUIET, alpha=0.2, lw=0, zorder=1)
-    lower.axhline(0.0, color=INK, lw=0.6, zorder=1)
-    for computed, color in ((d.before[number][place], BEFORE), (d.after[number][place], AFTER)):
-        upper.plot(t, computed, color=color, lw=1.5, ls=_dashes(color), zorder=3)
-        lower.plot(t, run.measured[place] - computed, color=color, lw=1.2, ls=_dashes(color), zorder=3)
-    for axes in (upper, lower):
-        tidy(axes)
-        axes.set_xlim(0.0, _last(run) / divisor)
-        if run.hold_out:
-            axes.set_facecolor(HELD_OUT)
-    upper.set_title(short(series.sensor, 34), fontsize=FONT, loc="left", pad=3)
+    handles: list[Any] = [Patch(color=color, label=name) for name, color in (("original", BEFORE), ("amended", AFTER))]
+    handles.append(Line2D([], [], color=INK, lw=1.0, ls=(0, (2, 1.2)), label="noise"))
+    legend(drawn, handles)
 
 
 # -- probabilities -----------------------------------------------------------------------------------------------------
@@ -249,7 +141,7 @@ def probabilities_figure(d: DiagnosisData, most: int = 8) -> Figure:
         axes.set_xlim(0, 1)
         tidy(axes)
         axes.grid(axis="y", visible=False)
-        axes.set_title(what, fontsize=FONT, loc="left", pad=4)
+        panel_title(axes, what, pad=4)
     lower.set_xlabel("probability", fontsize=FONT)
     title(drawn, "Probabilities of effects and of sets", "")
     return drawn

@@ -10,7 +10,19 @@ from numpy.typing import NDArray
 
 from tyrefem.diagnose.data.residual_tables import rms
 from tyrefem.diagnose.words.result_tables import rms_table
-from tyrefem.reports.figures.style import FONT, INK, PALETTE, QUIET, TITLE, add_axes, figure, short, tidy, title
+from tyrefem.reports.figures.style import (
+    FONT,
+    INK,
+    PALETTE,
+    QUIET,
+    TITLE,
+    add_axes,
+    figure,
+    panel_title,
+    short,
+    tidy,
+    title,
+)
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -56,7 +68,7 @@ def gap_figure(d: DiagnosisData, width: float = 9.4, most_runs: int = 99, most_s
         axes = add_axes(drawn, left + column * step_x, 0.46 + (rows - 1 - row) * step_y, step_x - 0.16, high)
         _panel(axes, d, number, sensors, limits, step_x - 0.16)
         held = " (held out)" if run.hold_out else ""
-        axes.set_title(f"{short(run.name, 16)}{held}", fontsize=FONT, loc="left", pad=3)
+        panel_title(axes, f"{short(run.name, 16)}{held}")
         if column:
             axes.tick_params(labelleft=False)
         if place + columns >= len(runs):

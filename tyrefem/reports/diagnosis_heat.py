@@ -15,6 +15,7 @@ from tyrefem.reports.figures.style import (
     add_axes,
     figure,
     line_style,
+    panel_title,
     short,
     si,
     tidy,
@@ -61,7 +62,7 @@ def heat_course_figure(d: DiagnosisData, over_time: HeatOverTime) -> Figure:
         axes.axhline(0.0, color=INK, lw=0.7)
         axes.set_ylabel(f"[{written}]", fontsize=FONT)
         clear = "" if source.clear else " (not clear)"
-        axes.set_title(f"{short(source_place(d, source), 70)}{clear}", fontsize=FONT, loc="left", pad=4)
+        panel_title(axes, f"{short(source_place(d, source), 70)}{clear}", pad=4)
         axes.annotate(
             short(course_words(source), 110), (0.01, 0.95), xycoords="axes fraction", fontsize=FONT - 1, va="top",
         )  # fmt: skip

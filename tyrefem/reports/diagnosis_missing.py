@@ -27,6 +27,7 @@ from tyrefem.reports.figures.style import (  # fmt: skip
     figure,
     line_style,
     millimetres,
+    panel_title,
     short,
     si,
     tidy,
@@ -233,7 +234,7 @@ def _missing_stations(d: DiagnosisData) -> Figure:
         low, high = axes.get_ylim()
         axes.set_ylim(low, high + 0.14 * (high - low))
         axes.set_ylabel(f"[{shown}]", fontsize=FONT)
-        axes.set_title(what, fontsize=FONT, loc="left", pad=4)
+        panel_title(axes, what, pad=4)
         axes.set_xlim(0.0, section.line.length * 1e3)
         tidy(axes)
     panels[-1].set_xlabel("place along the meridian from crown to bead, s [mm]", fontsize=FONT)

@@ -88,9 +88,9 @@ def recorded(study: StudyData, times: Array, temperatures: ArrayLike) -> dict[st
         channel = name
         for effect in swapping:
             channel = effect.channel(channel)
-        column = read[channel] + sum(effect.offset(name) for effect in off)
-        readings[name] = logged(study, times, column)
-    return readings
+        readings[name] = read[channel] + sum(effect.offset(name) for effect in off)
+    late = _late(study)
+    return {name: _later(times, column, late) for name, column in readings.items()} if late else readings
 
 
 def _acting_at(port: str, study: StudyData) -> list[Effect]:
@@ -100,8 +100,13 @@ def _acting_at(port: str, study: StudyData) -> list[Effect]:
 
 def logged(study: StudyData, times: Array, temperatures: Array) -> Array:
     """Temperatures (n_times, ...) by the logger's clock, which all channels have, also contained air and rim."""
-    late = sum(effect.clock() for effect in _acting_at("clock", study))
+    late = _late(study)
     return _later(times, temperatures, late) if late else temperatures
+
+
+def _late(study: StudyData) -> float:
+    """How late the logger's clock is, s."""
+    return sum(effect.clock() for effect in _acting_at("clock", study))
 
 
 def _later(times: Array, readings: Array, late: float) -> Array:

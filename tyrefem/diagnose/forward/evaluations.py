@@ -6,7 +6,7 @@ import pickle
 import shutil
 import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from tyrefem.brief import Brief
 from tyrefem.cache import Cache
 from tyrefem.diagnose.forward.forward_model import ForwardModel
-from tyrefem.diagnose.forward.worker_queues import HomedTask, WorkerQueues, worker_queues
+from tyrefem.diagnose.forward.worker_queues import HomedTask, WorkerQueues, Workers, started_workers
 from tyrefem.inputs.study import StudyData
 from tyrefem.output import jsonable, versions
 from tyrefem.variants.answer_store import AnswerStore, digest, effects_source, plain, study_digest
@@ -87,10 +87,6 @@ def _task(file: Path | None, name: str, arguments: tuple[Any, ...]) -> Any:
     return getattr(_MODEL[file], name)(*arguments)
 
 
-def _ready() -> None:
-    """The first task of a worker process: meanwhile it has imported what it needs."""
-
-
 @dataclass(eq=False)
 class WorkerModels:
     """Worker processes that evaluate one forward model after another; ``folder``: for what they share."""
@@ -111,14 +107,16 @@ class WorkerModels:
 
 
 @contextmanager
-def worker_models(count: int) -> Iterator[WorkerModels | None]:
-    """``count`` worker processes for `evaluating`, which start at once; None if one process is enough."""
-    if count <= 1:
-        yield None
-        return
-    with tempfile.TemporaryDirectory(prefix="tyrefem-") as folder, worker_queues(count) as queues:
-        queues.start(_ready)
-        yield WorkerModels(queues, Path(folder))
+def worker_models(workers: Workers) -> Iterator[WorkerModels | None]:
+    """Worker processes for `evaluating`; a number of them starts at once. None if one process is enough."""
+    with ExitStack() as stack:
+        if isinstance(workers, int):
+            workers = stack.enter_context(started_workers(max(workers, 1)))
+        if isinstance(workers, int):
+            yield None
+            return
+        folder = stack.enter_context(tempfile.TemporaryDirectory(prefix="tyrefem-"))
+        yield WorkerModels(workers, Path(folder))
 
 
 @dataclass(frozen=True, eq=False)
@@ -187,9 +185,12 @@ def _home(number: int, arguments: tuple[Any, ...]) -> int:
 
 @contextmanager
 def evaluating(
-    model: ForwardModel, workers: int = 1, store: ProgressStore | None = None, pool: WorkerModels | None = None
+    model: ForwardModel,
+    workers: Workers = 1,
+    store: ProgressStore | None = None,
+    pool: WorkerModels | None = None,
 ) -> Iterator[Evaluations]:
-    """Evaluations of a model in ``workers`` processes, or in those of ``pool``; 1: in this process."""
+    """Evaluations of a model in ``workers``, see `worker_models`, or in those of ``pool``; 1: in this process."""
     if pool is not None:
         shared, file = pool.take(model)
         yield Evaluations(shared, pool.queues, store, file)

@@ -21,6 +21,8 @@ from tyrefem.diagnose.unknowns.unknown import Unknown
 Array = NDArray[np.float64]
 Values = Mapping[Unknown, float]
 Tick = Callable[[], None] | None
+#: Parts of a Jacobian by a reduced model.
+PARTS = 2
 
 
 @dataclass(frozen=True)
@@ -112,10 +114,7 @@ class Predictions(Brief):
         """Jacobians (n_blocks, n_unknowns) at some drives for every set with its unknowns and values."""
         wanted = [(k, i) for k in range(len(queries)) for i in numbers]
         modal = [(k, i) for k, i in wanted if self.modes and self._is_certified(queries[k][0], i)]
-        answers = self.evaluations.of("reduced_jacobian", [(i, self.modes[i], *queries[k][1:]) for k, i in modal], tick)
-        tables = {
-            pair: jacobian for pair, (status, jacobian) in zip(modal, answers, strict=True) if status[0] == FOLLOWED
-        }
+        tables = self._by_slopes(queries, modal, tick)
         # A model that holds here may not follow some of the further effects: only these are simulated.
         left = {(k, i): np.arange(len(queries[k][1])) for k, i in wanted if (k, i) not in tables}
         left |= {
@@ -130,6 +129,30 @@ class Predictions(Brief):
             table = tables.setdefault((k, i), np.empty((len(jacobian), len(queries[k][1]))))
             table[:, left[k, i]] = jacobian
         return [[tables[k, i] for i in numbers] for k in range(len(queries))]
+
+    def _by_slopes(
+        self,
+        queries: Sequence[tuple[Members, tuple[Unknown, ...], Values]],
+        pairs: Sequence[tuple[int, int]],
+        tick: Tick,
+    ) -> dict[tuple[int, int], Array]:
+        """(number of the query, number of the drive) -> Jacobian by the reduced model, where it can be used.
+
+        Every Jacobian is computed in `PARTS`, which cost as much: three drives keep two processes busy. Their number
+        does not depend on that of the processes, so that the numbers do not.
+        """
+        parts = [(k, i, slice(part, None, PARTS)) for k, i in pairs for part in range(PARTS)]
+        questions = [(i, self.modes[i], queries[k][1][columns], queries[k][2]) for k, i, columns in parts]
+        tables: dict[tuple[int, int], Array] = {}
+        left_out: set[tuple[int, int]] = set()
+        for (k, i, columns), (status, jacobian) in zip(
+            parts, self.evaluations.of("reduced_jacobian", questions, tick), strict=True
+        ):
+            if status[0] != FOLLOWED:
+                left_out.add((k, i))
+            table = tables.setdefault((k, i), np.empty((len(jacobian), len(queries[k][1]))))
+            table[:, columns] = jacobian
+        return {pair: table for pair, table in tables.items() if pair not in left_out}
 
     def give_up(self) -> None:
         """Use no reduced models from here on: they failed at the best fit."""

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import importlib
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 from tyrefem.processes import processes
+
+T = TypeVar("T")
 
 
 @dataclass(frozen=True)
@@ -34,10 +37,15 @@ class WorkerQueues:
 
     workers: Sequence[Executor]
 
-    def start(self, ready: Callable[[], None]) -> None:
-        """Start all processes, with a first task each that is not waited for."""
+    @property
+    def count(self) -> int:
+        """Number of workers."""
+        return len(self.workers)
+
+    def load(self, module: str) -> None:
+        """Let all processes import a module, and do not wait for them."""
         for worker in self.workers:
-            worker.submit(ready)
+            worker.submit(_load, module)
 
     def results(self, tasks: Mapping[int, HomedTask]) -> Iterator[tuple[int, Any]]:
         """Yield (number of the task, result) as the results become ready."""
@@ -63,8 +71,56 @@ class WorkerQueues:
                 yield number, future.result()
 
 
+#: What workers of a diagnosis import while their parent imports modules of its own.
+EVALUATIONS = "tyrefem.diagnose.forward.evaluations"
+
+
+def _load(module: str) -> None:
+    importlib.import_module(module)
+
+
+#: A number of processes, or processes that are already started.
+Workers = int | WorkerQueues
+
+
+def number_of(workers: Workers) -> int:
+    """The number of processes.
+
+    >>> number_of(3)
+    3
+    """
+    return workers if isinstance(workers, int) else workers.count
+
+
+def begun(workers: Workers, function: Callable[..., T], *arguments: Any) -> Callable[[], T]:
+    """Begin ``function(*arguments)`` in the first of the processes; returns a function that waits for the result.
+
+    Without processes the result is computed when it is asked for.
+
+    >>> begun(1, max, 2, 3)()
+    3
+    """
+    if isinstance(workers, int):
+        return lambda: function(*arguments)
+    return workers.workers[0].submit(function, *arguments).result
+
+
 @contextmanager
 def worker_queues(count: int) -> Iterator[WorkerQueues]:
     """``count`` new processes with a queue each; see `tyrefem.processes.processes`."""
     with ExitStack() as stack:
-        yield WorkerQueues([stack.enter_context(processes(1)) for _ in range(count)])
+        workers = [stack.enter_context(processes(1)) for _ in range(count)]
+        yield WorkerQueues(workers)
+        for worker in workers:  # all end at once; the stack waits for one after the other
+            worker.shutdown(wait=False)
+
+
+@contextmanager
+def started_workers(count: int) -> Iterator[Workers]:
+    """``count`` processes that begin to import what they need; 1 if one process is enough."""
+    if count == 1:
+        yield 1
+        return
+    with worker_queues(count) as queues:
+        queues.load(EVALUATIONS)
+        yield queues

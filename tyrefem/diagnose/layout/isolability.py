@@ -20,6 +20,7 @@ from tyrefem.diagnose.forward.effort import SENSITIVITIES, check_effort
 from tyrefem.diagnose.forward.evaluations import Evaluations, ProgressStore, evaluating
 from tyrefem.diagnose.forward.forward_model import ForwardModel
 from tyrefem.diagnose.forward.sampling import DriveSampling, SensorSampling
+from tyrefem.diagnose.forward.worker_queues import Workers, number_of
 from tyrefem.diagnose.inference.linear_model import DesignMatrix, LinearModel
 from tyrefem.diagnose.inference.set_evidences import SetEvidences
 from tyrefem.diagnose.unknowns.candidates import Candidate, Members, SetPrior, catalogue_candidates
@@ -230,7 +231,7 @@ def candidates_of(study: StudyData) -> tuple[Candidate, ...]:
 def isolability(
     study: StudyData,
     *,
-    workers: int = 1,
+    workers: Workers = 1,
     progress: Callable[[str, int, int], None] | None = None,
     known: Sensitivities | None = None,
     store: ProgressStore | None = None,
@@ -281,7 +282,7 @@ def isolability(
 def planned_sensitivities(
     study: StudyData,
     *,
-    workers: int = 1,
+    workers: Workers = 1,
     progress: Callable[[str, int, int], None] | None = None,
     store: ProgressStore | None = None,
 ) -> Sensitivities:
@@ -289,7 +290,7 @@ def planned_sensitivities(
     NEEDS.check(study)
     candidates_of(study)
     model = ForwardModel(study, planned(study))
-    check_effort(model, f"the sensitivities of {study.name}", SENSITIVITIES, workers)
+    check_effort(model, f"the sensitivities of {study.name}", SENSITIVITIES, number_of(workers))
     if store is not None:
         store.open(model)
     with evaluating(model, workers, store) as evaluations:

@@ -51,7 +51,23 @@ def figure(width: float, height: float) -> Figure:
 def add_axes(drawn: Figure, left: float, bottom: float, width: float, height: float) -> Axes:
     """Add axes at a place, inches."""
     w, h = drawn.get_size_inches()
-    return drawn.add_axes((left / w, bottom / h, width / w, height / h))
+    axes = drawn.add_axes((left / w, bottom / h, width / w, height / h))
+    axes.set_title("", y=1.0)  # without a stated place, the ticks of all axes are measured for their titles
+    return axes
+
+
+def panel_title(axes: Axes, text: str, *, size: float = FONT, pad: float = 3.0) -> None:
+    """Write a text above the left end of axes."""
+    axes.set_title(text, fontsize=size, loc="left", pad=pad, y=1.0)
+
+
+def legend(drawn: Figure, handles: Sequence[Any]) -> None:
+    """One legend for all panels, at the upper right."""
+    width, height = drawn.get_size_inches()
+    drawn.legend(
+        handles=list(handles), loc="upper right", bbox_to_anchor=(1 - 0.05 / width, 1 - 0.28 / height),
+        ncols=len(handles), fontsize=FONT, frameon=False, handlelength=1.6, columnspacing=1.2,
+    )  # fmt: skip
 
 
 def png(drawn: Figure) -> bytes:
