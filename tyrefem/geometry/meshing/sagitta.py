@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from tyrefem.cache import Cache, Content
 from tyrefem.errors import InputError
 from tyrefem.geometry.meshing.mesh import TyreMesh
 
@@ -15,6 +16,8 @@ ROUNDED = 1e-6
 ALONG = np.linspace(0.0, 1.0, 65)
 #: Number of points evaluated together.
 TOGETHER = 2000
+#: Nodes of the edges at the boundary, (n, 2), by the nodes of the elements: all shapes of a section have the same ones.
+_OUTER: Cache[NDArray[np.int64]] = Cache(size=8)
 
 
 def snapped(tyre: TyreMesh, points: ArrayLike) -> Array:
@@ -82,7 +85,9 @@ def _enclosed(ends: Array, points: Array) -> NDArray[np.bool_]:
 
 def _edges(tyre: TyreMesh) -> Array:
     """Ends of the edges at the mesh's boundary, (n, 2, 2)."""
-    return np.asarray(tyre.mesh.p.T[tyre.mesh.facets[:, tyre.mesh.boundary_facets()].T])
+    mesh = tyre.mesh
+    outer = _OUTER.get(Content.of(mesh.t), lambda: np.asarray(mesh.facets[:, mesh.boundary_facets()].T))
+    return np.asarray(mesh.p.T[outer])
 
 
 def _nearest(ends: Array, points: Array) -> tuple[Array, Array, NDArray[np.intp]]:
