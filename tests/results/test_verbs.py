@@ -68,7 +68,8 @@ def test_a_tyre_is_pressed_and_its_frequencies_are_found_by_verbs(tmp_path: Path
     assert modes.table.name.tolist() == ["lateral"]
     assert modes.tyre.pressure == 4e5
     assert modes.save(tmp_path / "modes", pictures=False) == tmp_path / "modes"
-    assert sorted(path.name for path in (tmp_path / "modes").iterdir()) == ["modes.csv", "modes.json"]
+    files = ["modes.csv", "modes.json", "study.toml", "summary.json"]
+    assert sorted(path.name for path in (tmp_path / "modes").iterdir()) == files
 
 
 def test_a_comparison_has_verbs_and_its_data_have_none(tmp_path: Path) -> None:

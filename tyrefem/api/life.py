@@ -39,15 +39,27 @@ class Life(lives.LifeData):
 
         return summary(self)
 
-    def save(self, folder: str | Path, *, sensitivity: bool = False, pictures: bool = True, vtk: bool = True) -> Path:
-        """Write the files of `tyrefem life`: ``summary.json``, ``life.csv``, ``life.png``, ``life.vtu``; return the
-        folder. ``sensitivity``: also the `shifts`, as ``sensitivity.csv``.
+    def save(
+        self,
+        folder: str | Path,
+        *,
+        sensitivity: bool = False,
+        pictures: bool = True,
+        vtk: bool = True,
+        force: bool = False,
+    ) -> Path:
+        """Write the files of `tyrefem life`: ``summary.json``, ``life.csv``, ``life.png``, ``life.vtu``,
+        ``study.toml``; return the folder. ``sensitivity``: also the `shifts`, as ``sensitivity.csv``.
+
+        ``force``: replace the user's files and the results of other commands.
 
         Raises
         ------
-        InputError : the folder cannot be written.
+        InputError : the folder cannot be written; files in it are not of this command.
         """
-        from tyrefem.reports.life import write_files
+        from tyrefem.api.saving import saving
+        from tyrefem.reports.life import FILES, write_files
 
-        write_files(self, Path(folder), self.shifts if sensitivity else (), pictures=pictures, vtk=vtk)
+        with saving(folder, "life", FILES, self.study, force=force) as place:
+            write_files(self, place, self.shifts if sensitivity else (), pictures=pictures, vtk=vtk)
         return Path(folder)

@@ -12,9 +12,9 @@ from tyrefem.inputs import study as studies
 if TYPE_CHECKING:
     from tyrefem.api.life import Life
     from tyrefem.api.mechanics import ForcesOverSlip, ForceTable, LoadedTyre, NaturalModes, RollingWheel
+    from tyrefem.api.wear import WearOverDrive
     from tyrefem.fatigue.duty import WarmRun
     from tyrefem.mechanics.rolling.steady_rolling import FrictionLaw
-    from tyrefem.wear.drive_wear import DriveWear
 
 
 class StudyMechanics(studies.StudyData):
@@ -114,7 +114,7 @@ class StudyMechanics(studies.StudyData):
         )  # fmt: skip
         return with_verbs(RollingWheel, data)
 
-    def wear(self) -> DriveWear:
+    def wear(self) -> WearOverDrive:
         """Wear of the tread over the drive, by ring; the drive's phases roll with friction.
 
         Raises
@@ -122,9 +122,10 @@ class StudyMechanics(studies.StudyData):
         InputError : a law of sliding other than ``rolling``; no ``[wear]`` on the tread's card; a drive that never
             rolls.
         """
+        from tyrefem.api.wear import WearOverDrive
         from tyrefem.wear.drive_wear import drive_wear
 
-        return drive_wear(self)
+        return with_verbs(WearOverDrive, drive_wear(self), study=self)
 
     def slip_curve(
         self,
