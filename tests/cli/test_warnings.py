@@ -144,6 +144,24 @@ def test_a_sweep_warns_of_a_factor_as_a_single_run_does(capfd: pytest.CaptureFix
         assert "section.parameters.thickness_scale.body-ply: 0.8 changes the area of 'body-ply' by -10 %" in line
 
 
+def test_a_sweep_warns_of_the_values_of_its_table_of_cases(here: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    """Each field once, by the first variant that has a warning of it; values that the study has itself are known."""
+    (here / "cases.csv").write_text(
+        "name,section.thickness_scale.body-ply,materials.tread.density.value\n"
+        "thin,0.8,1130 kg/m**3\nlight,1.0,1.13 kg/m**3\nlighter,1.0,1.12 kg/m**3\n",
+        encoding="utf-8",
+    )
+    (here / "sweep.toml").write_text(f'study = "{RADIAL}"\nsample = "list"\ncases = "cases.csv"\n', encoding="utf-8")
+    assert main(["check", "sweep.toml"]) == 0
+    factor, density = lines(capfd)
+    assert "section.parameters.thickness_scale.body-ply: 0.8 changes the area of 'body-ply' by -10 %" in factor
+    assert "materials.tread.density.value: 1.13" in density
+    # The command says the same before it computes.
+    (here / "out").write_text("", encoding="utf-8")
+    assert main(["sweep", RADIAL, "--cases", "cases.csv", "--out", "out"]) == 2
+    assert capfd.readouterr().err.splitlines()[:2] == [factor, density]
+
+
 def test_check_of_a_campaign_warns_of_its_cases_as_of_a_study(here: Path, capfd: pytest.CaptureFixture[str]) -> None:
     """Also of an effect beside a strain law that presses the tyre itself."""
     text = library.find("study", NASA).read_text(encoding="utf-8")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import hashlib
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -64,18 +64,25 @@ class Plan:
 
     @functools.cached_property
     def warnings(self) -> tuple[InputWarning, ...]:
-        """Warnings of listed values and of both ends of every range that the study itself does not give.
+        """Warnings of listed values, of both ends of every range and of listed variants that the study itself does not
+        give.
 
-        Each number varies alone; of its warnings of a field the first is kept.
+        Each number varies alone, each listed variant as a whole; of the warnings of a field the first is kept.
         """
         known = {warning.field for warning in warnings_of(self.study)}
         first: dict[str | None, InputWarning] = {}
-        for number in self.varied:
-            for value in number.ends:
-                for warning in warnings_of(self.study.replace(number.changes(value))):
-                    if warning.field not in known:
-                        first.setdefault(warning.field, warning)
+        for changes in self._trials():
+            for warning in warnings_of(self.study.replace(changes)):
+                if warning.field not in known:
+                    first.setdefault(warning.field, warning)
         return tuple(first.values())
+
+    def _trials(self) -> Iterator[Mapping[str, Any]]:
+        """Changes that are checked for the whole plan."""
+        if self.sampling.get("sample") == "list":
+            yield from self.variants
+        for number in self.varied:
+            yield from map(number.changes, number.ends)
 
     @property
     def keys(self) -> list[str]:
