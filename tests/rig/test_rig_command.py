@@ -93,6 +93,9 @@ def test_layer_study_improves_with_the_true_layers(tmp_path: Path) -> None:
     single, two = comparison.table().to_dict("records")
     assert two["transient_misfit_K"] < 0.5 * single["transient_misfit_K"]
     assert two["log_evidence"] > single["log_evidence"] + 10
+    # As in an identification: a single layer misses the readings, so it determines nothing.
+    assert [(row["determined"], row["doubtful"] > 0) for row in (single, two)] == [(0, True), (3, False)]
+    assert comparison.words == ("1 layer: doubtful: the model does not describe the readings",)
     assert {file.name for file in save_layers(comparison, tmp_path / "out").iterdir()} == {
         "layers.csv",
         "layers.png",

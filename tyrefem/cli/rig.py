@@ -167,6 +167,8 @@ def layers(
         save_layers(comparison, folder, seed=drawn)
     answer_with({"rows": comparison.table().to_dict("records")})
     say(comparison.table().to_string(index=False, float_format="%.3g"))
+    for words in comparison.words:
+        say(f"- {words}")
     say(f"results in {folder}")
 
 

@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.brief import counted
 from tyrefem.errors import InputError
 from tyrefem.heating_test.card import RigCard
 from tyrefem.heating_test.grid import Fineness
 from tyrefem.heating_test.identification import IdentificationData, identify
 from tyrefem.heating_test.readings import HeatingTest
+from tyrefem.heating_test.verdict import REMARK
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -98,14 +100,26 @@ class LayerStudy:
                     "rms_K": float(np.sqrt(np.mean(np.concatenate([b.residual**2 for b in fit.fit.blocks])))),
                     "model_error": max(fit.fit.noise.model.values()),
                     "log_evidence": fit.fit.evidence - self.fits[0].fit.evidence,
-                    # Too few layers are doubtful; how many properties the readings carry is another question.
-                    "determined": sum(
-                        replace(estimate, doubtful=False).verdict == "determined" for estimate in fit.properties
-                    ),
+                    "determined": _with_verdict(fit, "determined"),
+                    "doubtful": _with_verdict(fit, "doubtful"),
                     "properties": len(fit.properties),
                 }
             )
         return pd.DataFrame(rows)
+
+    @property
+    def words(self) -> tuple[str, ...]:
+        """A line on each fit whose model misses the readings; empty without any."""
+        return tuple(
+            f"{counted(count, 'layer')}: {REMARK['doubtful']}"
+            for count, fit in zip(self.counts, self.fits, strict=True)
+            if _with_verdict(fit, "doubtful")
+        )
+
+
+def _with_verdict(fit: IdentificationData, verdict: str) -> int:
+    """Number of conductivities and specific heats with this verdict."""
+    return sum(estimate.verdict == verdict for estimate in fit.properties)
 
 
 def _misfits(fit: IdentificationData) -> tuple[float, float]:

@@ -216,6 +216,7 @@ ROWS: dict[str, Keys] = {
         "transient_misfit_K": "number: While heating and cooling.", "steady_misfit_K": "number: At the plateau.",
         "rms_K": "number: Of all residuals.", "model_error": "number: Error of the model over the rise.",
         "log_evidence": "number: Over one layer, nats.", "determined": "integer: Properties that are determined.",
+        "doubtful": "integer: Properties in doubt: the model misses the readings.",
         "properties": "integer: Of how many.",
     },
     "thermal-card.numbers[]": {
