@@ -52,7 +52,7 @@ def test_places_that_are_remembered_are_few(study: tf.Study) -> None:
 def test_studies_read_twice_share_what_depends_on_their_section(study: tf.Study) -> None:
     other = tf.study("nasa-22x5.5-8pr", QUICK)
     assert other.section is not study.section
-    assert wall_of(other.section, 5e-3) is wall_of(study.section, 5e-3)
+    assert wall_of(other.mesh()) is wall_of(study.mesh())
     mesh, again = study.mesh().mesh, other.mesh().mesh
     assert mesh is not again
     assert operators_of(mesh) is operators_of(again)

@@ -133,7 +133,7 @@ def test_the_wall_ends_at_the_bottoms_of_grooves():
     tyre = tf.study(RADIALS["passenger"].study, quick)
     result = tyre.run()
     section = tyre.section
-    wall = wall_of(section, result.tyre.mesh.size)
+    wall = wall_of(result.tyre.mesh)
     across = section.in_groove(wall.s)
     assert across.any()
     thinner = section.total_thickness(wall.s) - wall.thickness

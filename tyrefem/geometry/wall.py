@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-import functools
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.geometry import Section
+from tyrefem.cache import Cache, fingerprint
+from tyrefem.geometry.meshing import TyreMesh
+from tyrefem.geometry.meshing.sagitta import kept_inside
 
 Array = NDArray[np.float64]
 #: Number of stations from the crown to the bead; the end of the bead is left out.
@@ -28,19 +29,21 @@ class Wall:
     outer: Array
 
 
-def inside_mesh(section: Section, size: float, s: Array, depth: Array) -> Array:
-    """(r, z) of positions (s, depth), moved into a mesh of straight-sided elements of a size (m): at most a sagitta."""
-    return np.asarray(section.place(*section.clamp(s, depth, size**2 / 0.1)))
+_WALLS: Cache[Wall] = Cache(size=32)
 
 
-@functools.lru_cache(maxsize=32)
-def wall_of(section: Section, size: float) -> Wall:
-    """The wall of a section on a mesh of a size (m): a full section has the stations of a half on both its sides.
+def wall_of(tyre: TyreMesh) -> Wall:
+    """The wall of a meshed section, its surfaces at the mesh's straight edges; equal meshes share it.
 
-    The 32 latest are kept.
+    A full section has the stations of a half on both its sides.
     """
+    return _WALLS.get((tyre.section, fingerprint(tyre.mesh.p, tyre.mesh.t)), lambda: _wall(tyre))
+
+
+def _wall(tyre: TyreMesh) -> Wall:
+    section = tyre.section
     side = np.linspace(0.0, section.line.length, STATIONS)[:-1]
     s = side if section.half else np.concatenate([-side[:0:-1], side])
     thickness = section.rubber_thickness(s)
-    inner, outer = (inside_mesh(section, size, s, depth) for depth in (np.zeros_like(s), thickness))
+    inner, outer = (kept_inside(tyre, section.place(s, depth)) for depth in (np.zeros_like(s), thickness))
     return Wall(s, thickness, inner, outer)

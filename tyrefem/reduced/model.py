@@ -186,7 +186,7 @@ class ReducedModel(Brief):
     @functools.cached_property
     def wall(self) -> tuple[Array, Array, Array, Array]:
         """Stations s (k,) m, wall thickness (k,) m, and rows of V (k, m) at the inner and the outer surface."""
-        wall = wall_of(self.base.study.section, self.base.mesh.size)
+        wall = wall_of(self.base.mesh)
         inner, outer = np.split(self.rows(np.concatenate([wall.inner, wall.outer])), 2)
         return wall.s, wall.thickness, inner, outer
 

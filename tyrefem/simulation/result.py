@@ -223,7 +223,7 @@ class ResultData(Brief):
     @functools.cached_property
     def wall_gradient(self) -> tuple[Array, Array]:
         """s (k,) m along the meridian, and |T inner - T outer| / thickness there at the end, K/m."""
-        wall = wall_of(self.study.section, self.tyre.mesh.size)
+        wall = wall_of(self.tyre.mesh)
         field = self.history.field(len(self.times) - 1)
         inner, outer = (np.asarray(field.at(points)) for points in (wall.inner, wall.outer))
         return wall.s, np.abs(inner - outer) / wall.thickness
