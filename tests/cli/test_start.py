@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+import tyrefem
 from tyrefem.cli import app, main
 from tyrefem.cli.commands import _single
 
@@ -25,42 +26,66 @@ OTHER_COMMANDS = {
 }  # fmt: skip
 
 
-def loaded(*arguments: str) -> set[str]:
-    """The modules of a process that has run a command."""
-    code = (
-        "import json, sys\n"
-        "from tyrefem.cli import main\n"
-        "assert main(json.loads(sys.argv[1])) == 0\n"
-        "print(json.dumps(sorted(sys.modules)))\n"
-    )
+#: Runs a command; prints every module that its process has loaded, with the lines of code that asked for it first.
+CODE = """
+import json, sys
+lines = {}
+class Record:
+    def find_spec(self, name, path=None, target=None):
+        frame, callers = sys._getframe(1), []
+        while frame is not None and len(callers) < 8:
+            if "importlib" not in frame.f_code.co_filename:
+                callers.append(f"{frame.f_code.co_filename}:{frame.f_lineno}")
+            frame = frame.f_back
+        lines.setdefault(name, callers)
+sys.meta_path.insert(0, Record())
+from tyrefem.cli import main
+assert main(json.loads(sys.argv[1])) == 0
+print(json.dumps({name: lines.get(name, []) for name in sorted(sys.modules)}))
+"""
+
+
+def loaded(*arguments: str) -> dict[str, list[str]]:
+    """The modules of a process that has run a command, each with the lines that asked for it."""
     done = subprocess.run(
-        [sys.executable, "-c", code, json.dumps(arguments)], capture_output=True, text=True, check=False
+        [sys.executable, "-c", CODE, json.dumps(arguments)], capture_output=True, text=True, check=False
     )
     assert done.returncode == 0, done.stderr
-    return set(json.loads(done.stdout.splitlines()[-1]))
+    modules: dict[str, list[str]] = json.loads(done.stdout.splitlines()[-1])
+    return modules
+
+
+def among(modules: dict[str, list[str]], names: set[str]) -> dict[str, list[str]]:
+    """Those of these names: a failure shows who loads them."""
+    return {name: lines for name, lines in modules.items() if name in names}
+
+
+def test_a_module_is_named_with_the_lines_that_load_it(here: Path) -> None:
+    (lines,) = among(loaded("list", "studies"), {"tyrefem.library"}).values()
+    assert Path(lines[0].rpartition(":")[0]).is_relative_to(Path(tyrefem.__file__).parent)
 
 
 def test_help_loads_no_numerics(here: Path) -> None:
     modules = loaded("--help")
-    assert modules & (NEVER | DRAWING | NUMERICS) == set()
+    assert among(modules, NEVER | DRAWING | NUMERICS) == {}
 
 
 def test_help_of_a_command_loads_that_command_alone(here: Path) -> None:
     modules = loaded("run", "--help")
-    assert modules & (NEVER | DRAWING | NUMERICS | OTHER_COMMANDS) == set()
+    assert among(modules, NEVER | DRAWING | NUMERICS | OTHER_COMMANDS) == {}
     assert "tyrefem.cli.run" in modules
 
 
 def test_a_run_loads_what_it_computes_with(here: Path) -> None:
     modules = loaded("run", "nasa-22x5.5-8pr", *COARSE, "--no-pictures", "--out", "out")
-    assert modules & (NEVER | DRAWING | OTHER_COMMANDS) == set()
-    assert {"skfem", "tyrefem.cli.run"} <= modules
+    assert among(modules, NEVER | DRAWING | OTHER_COMMANDS) == {}
+    assert {"skfem", "tyrefem.cli.run"} <= modules.keys()
 
 
 def test_a_report_loads_what_draws(here: Path) -> None:
     modules = loaded("run", "nasa-22x5.5-8pr", *COARSE, "--out", "out")
-    assert modules & (NEVER | OTHER_COMMANDS) == set()
-    assert modules >= DRAWING
+    assert among(modules, NEVER | OTHER_COMMANDS) == {}
+    assert modules.keys() >= DRAWING
 
 
 def test_python_knows_the_public_names_before_it_loads_them() -> None:
