@@ -316,12 +316,7 @@ LOCKED = {
 
 def assumptions(study: StudyData, estimates: list[str]) -> list[tuple[str, str]]:
     """Pairs of assumption and consequence; ``estimates``: material entries that are marked as estimates."""
-    mechanics = study.card.mechanics
-    drive = study.card.drive
-    slip = SLIDING if any(phase.slides for phase in drive.phases) else FREE
-    if study.card.boundaries.sliding.rolls:
-        slip = {name: f"{text} {_friction_assumption(study)}" for name, text in ROLLING.items()}
-    locked = LOCKED if any(drive.locked_since(start) is not None for start in drive.starts) else {}
+    mechanics, drive = study.card.mechanics, study.card.drive
     always = [*ALWAYS.items()]
     given = mechanics.energy if mechanics.strain == "given" else None
     if given is not None:
@@ -330,9 +325,28 @@ def assumptions(study: StudyData, estimates: list[str]) -> list[tuple[str, str]]
         always[0] = assumption
     if mechanics.feedback is not None:
         always[-1] = ("Feedback of temperature on the strain cycle", _feedback_assumptions(mechanics.feedback))
-    if slip is FREE and not all(effect.free_rolling for effect in study.effects):
-        slip = {name: f"{text} The study's effects are added to this." for name, text in FREE.items()}
-    stated = [always[0], *slip.items(), *locked.items(), *always[1:]]
+    locked = LOCKED if any(drive.locked_since(start) is not None for start in drive.starts) else {}
+    stated = [always[0], _loss_assumption(study), *_slip_assumptions(study).items(), *locked.items(), *always[1:]]
+    stated += [*_effect_assumptions(study), *_formulas_from_memory(study)]
+    if estimates:
+        stated.append(("Estimated material numbers", f"Marked in the table of materials: {'; '.join(estimates)}."))
+    return [*stated, ("Validation", _validation(study))]
+
+
+def _slip_assumptions(study: StudyData) -> dict[str, str]:
+    """How the tyre slips on the road."""
+    if study.card.boundaries.sliding.rolls:
+        return {name: f"{text} {_friction_assumption(study)}" for name, text in ROLLING.items()}
+    if any(phase.slides for phase in study.card.drive.phases):
+        return SLIDING
+    if all(effect.free_rolling for effect in study.effects):
+        return FREE
+    return {name: f"{text} The study's effects are added to this." for name, text in FREE.items()}
+
+
+def _loss_assumption(study: StudyData) -> tuple[str, str]:
+    """What of the strain energy becomes heat, and on what tan delta depends."""
+    mechanics = study.card.mechanics
     over_frequency = [region for region, card in study.materials.items() if card.loss_tangent.depends_on_frequency]
     laws = "depends on temperature, not on frequency"
     if over_frequency:
@@ -342,48 +356,55 @@ def assumptions(study: StudyData, estimates: list[str]) -> list[tuple[str, str]]
         laws += f"; the loss modulus follows each point's strain amplitude in: {', '.join(over_strain)}"
         if mechanics.moduli == "secant":
             laws += "; their storage modulus is that of the region's strain amplitude under load"
+    if mechanics.strain == "fem" and mechanics.revolution == "harmonics":
+        every = f"Every harmonic of the strain round the wheel loses π tan δ of its energy per cycle; tan δ {laws}."
+        return "Loss of every harmonic", every
     cycle = (
         "The strain energy times tan δ is lost once per revolution (convention "
         f"{mechanics.loss_convention}); higher harmonics are neglected. tan δ {laws}."
     )
-    every = f"Every harmonic of the strain round the wheel loses π tan δ of its energy per cycle; tan δ {laws}."
-    harmonics = ("Loss of every harmonic", every)
-    by_harmonic = mechanics.strain == "fem" and mechanics.revolution == "harmonics"
-    stated.insert(1, harmonics if by_harmonic else ("One loss cycle per revolution", cycle))
+    return "One loss cycle per revolution", cycle
+
+
+def _effect_assumptions(study: StudyData) -> Iterator[tuple[str, str]]:
+    """The effects beside the base model, and those of other runs."""
     if study.effects:
-        added = "; ".join(
-            dict.fromkeys(f"{added_effect.name}: {added_effect.sentence.rstrip('.')}" for added_effect in study.effects)
-        )
-        stated.append(("Effects beside the base model", f"{added}. The study states the source of their values."))
+        added = "; ".join(dict.fromkeys(f"{effect.name}: {effect.sentence.rstrip('.')}" for effect in study.effects))
+        yield "Effects beside the base model", f"{added}. The study states the source of their values."
     elsewhere = [effect for effect in study.card.effects if not effect.acts_in(study.card.run)]
     if elsewhere:
         left_out = "; ".join(" ".join(effect.label) for effect in elsewhere)
         at = f"This drive is of the run '{study.card.run}'." if study.card.run else "This drive is of no measured run."
-        stated.append(("Effects of measured runs that do not act here", f"{left_out}. {at}"))
-    presses = strain_law(study).presses
-    if mechanics.load_law.law == "tr-r-64" and not presses:
+        yield "Effects of measured runs that do not act here", f"{left_out}. {at}"
+
+
+def _formulas_from_memory(study: StudyData) -> Iterator[tuple[str, str]]:
+    """Formulas whose report was not at hand."""
+    mechanics = study.card.mechanics
+    if strain_law(study).presses:
+        return
+    if mechanics.load_law.law == "tr-r-64":
         memory = "The load-deflection formula of NASA TR R-64 is quoted from memory; a measured stiffness is better."
-        stated.append(("Load and deflection from memory", memory))
-    if mechanics.footprint.law == "tr-r-64" and not presses:
-        stated.append(
-            ("Footprint from memory", "The formula of the footprint's length, of NASA TR R-64, is quoted from memory.")
-        )
-    if estimates:
-        stated.append(("Estimated material numbers", f"Marked in the table of materials: {'; '.join(estimates)}."))
+        yield "Load and deflection from memory", memory
+    if mechanics.footprint.law == "tr-r-64":
+        yield "Footprint from memory", "The formula of the footprint's length, of NASA TR R-64, is quoted from memory."
+
+
+def _validation(study: StudyData) -> str:
+    """What the model was compared with."""
     measured = (
         "This study names measured tables; 'tyrefem compare' writes the comparison with them."
         if study.measured
         else "The study names no measured temperatures."
     )
     if strain_law(study).by_elements:
-        return [*stated, ("Validation", f"The strain cycle by finite elements is verified, not validated. {measured}")]
-    if given is not None:
-        return [*stated, ("Validation", f"The strain energy is an input, and is not validated. {measured}")]
-    scan = (
+        return f"The strain cycle by finite elements is verified, not validated. {measured}"
+    if study.card.mechanics.strain == "given":
+        return f"The strain energy is an input, and is not validated. {measured}"
+    return (
         "The model follows Clark & Dodge (1980). Their measured temperature curves are illegible in the scan, so it "
         f"has not been validated against them. {measured}"
     )
-    return [*stated, ("Validation", scan)]
 
 
 def _friction_assumption(study: StudyData) -> str:
