@@ -16,8 +16,8 @@ from tyrefem.diagnose.data.sensitivities import Sensitivities
 from tyrefem.diagnose.fitting.fits import FittedSet, predictive
 from tyrefem.diagnose.fitting.gauss_newton import initial_state
 from tyrefem.diagnose.fitting.selection import ScoredSet, sets_of
-from tyrefem.diagnose.inference.evidence import bounds_mass
 from tyrefem.diagnose.inference.linear_model import DesignMatrix, LinearModel
+from tyrefem.diagnose.layout.amplitudes import Amplitudes
 from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
 from tyrefem.diagnose.unknowns.candidates import Members, SetPrior, catalogue_candidates, in_single_runs, simulated
 from tyrefem.diagnose.unknowns.heat_patches import patches
@@ -141,76 +141,54 @@ class LinearLayout(Brief):
         many = {each for each in self.candidates if len(each.amplitudes) + len(each.presence) > 1}
         return [number for number, members in enumerate(self.sets) if many.intersection(members)]
 
-    def _evidence(self, data: Array) -> Array:
-        """ln evidence of every set, heat last, relative to no effect; as `LinearModel.log_evidence`."""
+    def _amplitudes(self, data: Array) -> Amplitudes:
+        """The amplitudes of all candidates, given data."""
         projected, gram = self._projected
-        first, second, columns, amplitude = self._columns
-        rows = self._bounded_nuisance[columns]
-        overlap = (projected @ data)[columns]
-        gram = gram[np.ix_(columns, columns)]
+        _, _, columns, fitted = self._columns
         unknowns = [(*each.amplitudes, *each.presence)[0] for each in self.candidates]
         sd, low, high = (np.array([getattr(each, name) for each in unknowns]) for name in ("sd", "low", "high"))
-        diagonal = np.diag(gram)
+        overlap, rows = (projected @ data)[columns], self._bounded_nuisance[columns]
+        return Amplitudes(overlap, gram[np.ix_(columns, columns)], sd, low, high, fitted, rows)
+
+    def _evidence(self, data: Array) -> Array:
+        """ln evidence of every set, heat last, relative to no effect; as `LinearModel.log_evidence`."""
+        amplitudes = self._amplitudes(data)
+        first, second, _, fitted = self._columns
         result = np.zeros(len(self.sets) + 1)
         # By set, effects of a set on the bounded base numbers and sensors: shift of their means, added variance.
-        shift, spread = (np.zeros((len(self.sets) + 1, rows.shape[1])) for _ in range(2))
-        size = (first >= 0).astype(int) + (second >= 0)
-
-        def single(i: Array, b: Array) -> Array:
-            """ln evidence of a single amplitude for overlaps b, or of a fixed signal."""
-            a, s = 1 + sd[i] ** 2 * diagonal[i], sd[i]
-            z = s * b / a
-            free = s * b * z / 2 - np.log(a) / 2 + bounds_mass(z, 1 / np.sqrt(a), low[i] / s, high[i] / s)
-            return np.where(amplitude[i], free, b - diagonal[i] / 2)
-
-        def moved(i: Array, b: Array) -> tuple[Array, Array]:
-            """Shift and variance of the bounded nuisance by a single amplitude, or by a fixed signal."""
-            a, s = 1 + sd[i] ** 2 * diagonal[i], sd[i]
-            x, variance = np.where(amplitude[i], s**2 * b / a, 1.0), np.where(amplitude[i], s**2 / a, 0.0)
-            return rows[i] * x[:, None], rows[i] ** 2 * variance[:, None]
-
-        alone = np.flatnonzero(size == 1)
-        result[alone] = single(first[alone], overlap[first[alone]])
-        shift[alone], spread[alone] = moved(first[alone], overlap[first[alone]])
-        two = np.flatnonzero(size == 2)
+        shift, spread = (np.zeros((len(self.sets) + 1, amplitudes.rows.shape[1])) for _ in range(2))
+        alone = np.flatnonzero((first >= 0) & (second < 0))
+        result[alone], shift[alone], spread[alone] = amplitudes.single(first[alone])
+        two = np.flatnonzero(second >= 0)
         i, j = first[two], second[two]
         # A fixed signal is subtracted from the data; it comes first.
-        swap = ~amplitude[j]
+        swap = ~fitted[j]
         i, j = np.where(swap, j, i), np.where(swap, i, j)
-        fixed = ~amplitude[i]
-        result[two] = np.where(fixed, overlap[i] - diagonal[i] / 2 + single(j, overlap[j] - gram[i, j]), 0.0)
-        shift[two], spread[two] = moved(j, overlap[j] - gram[i, j])
-        shift[two] += rows[i]
-        free = two[~fixed]
-        i, j = i[~fixed], j[~fixed]
-        a, b, c = 1 + sd[i] ** 2 * diagonal[i], 1 + sd[j] ** 2 * diagonal[j], sd[i] * sd[j] * gram[i, j]
-        det = a * b - c * c
-        u, v = sd[i] * overlap[i], sd[j] * overlap[j]
-        z, w = (b * u - c * v) / det, (a * v - c * u) / det
-        result[free] = (u * z + v * w) / 2 - np.log(det) / 2
-        result[free] += bounds_mass(z, np.sqrt(b / det), low[i] / sd[i], high[i] / sd[i])
-        result[free] += bounds_mass(w, np.sqrt(a / det), low[j] / sd[j], high[j] / sd[j])
-        of_i, of_j = rows[i] * sd[i][:, None], rows[j] * sd[j][:, None]
-        shift[free] = of_i * z[:, None] + of_j * w[:, None]
-        spread[free] = (of_i**2 * b[:, None] + of_j**2 * a[:, None] - 2 * of_i * of_j * c[:, None]) / det[:, None]
+        fixed = ~fitted[i]
+        after, free = two[fixed], two[~fixed]
+        result[after], shift[after], spread[after] = amplitudes.after_signal(i[fixed], j[fixed])
+        result[free], shift[free], spread[free] = amplitudes.pair(i[~fixed], j[~fixed])
         if self._several:
             linear = LinearModel(self.design, data)
             none = linear.log_evidence(())
             for number in self._several:
                 result[number] = linear.log_evidence(self.sets[number]) - none
         if math.isfinite(self.log_prior_heat):
-            columns_of_heat, factor, half = self._of_heat
-            right = columns_of_heat @ data
-            z_heat = cho_solve(factor, right)
-            result[-1] = float(right @ z_heat) / 2 - half
-            of_heat = self._bounded_nuisance_of_heat
-            shift[-1] = of_heat.T @ z_heat
-            spread[-1] = np.einsum("pn,pn->n", of_heat, cho_solve(factor, of_heat))
+            result[-1], shift[-1], spread[-1] = self._evidence_of_heat(data)
         masses = self._nuisance_mass(data, shift, spread)
         if self._several:
             # These have the mass in their evidence.
             masses[self._several] = masses[0]
         return result + masses - masses[0]
+
+    def _evidence_of_heat(self, data: Array) -> tuple[float, Array, Array]:
+        """ln evidence of heat of unknown origin; shift and variance of the bounded nuisance by it."""
+        columns, factor, half = self._of_heat
+        right = columns @ data
+        z = cho_solve(factor, right)
+        of_heat = self._bounded_nuisance_of_heat
+        spread = np.einsum("pn,pn->n", of_heat, cho_solve(factor, of_heat))
+        return float(right @ z) / 2 - half, of_heat.T @ z, spread
 
     @cached_property
     def _bounded_nuisance(self) -> Array:
