@@ -4,7 +4,7 @@ in Green's strain."""
 from __future__ import annotations
 
 import functools
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Protocol
 
@@ -240,6 +240,43 @@ class _FirstInvariant:
 
 
 @dataclass(frozen=True, eq=False)
+class _TautCords:
+    """Cords of one direction: a = F d and d (3, e, q, m), W'/l and (W'' - W'/l)/l^2 (e, q, m), times r dA / 2."""
+
+    along: Array
+    direction: Array
+    pull: Array
+    stiff: Array
+
+    def add_to(self, matrix: Array, initial: dict[tuple[int, int], Array], precision: type) -> None:
+        """Add their terms of A to ``matrix``, and W'/l d d to ``initial``, which acts on every direction of force."""
+        dyad: Array = (self.along[:, None] * self.direction).astype(precision)
+        stiffened: Array = (self.stiff * dyad).astype(precision)
+        matrix += stiffened[:, :, None, None] * dyad
+        for i in range(3):
+            for j in range(3):
+                before = initial.get((i, j), np.zeros(()))
+                initial[i, j] = before + self.pull * (self.direction[i] * self.direction[j])
+
+
+@dataclass(frozen=True, eq=False)
+class _BentBlocks:
+    """Blocks of a tread: B (3, 3, e, q, m), W'' and W' (e, q, m), W' (t n + n t) (3, 3, e, q, m), times r dA."""
+
+    moved: Array
+    stiff: Array
+    slope: Array
+    turned: Array
+
+    def add_to(self, matrix: Array, initial: dict[tuple[int, int], Array], precision: type) -> None:
+        """Add their terms of A to ``matrix`` and ``initial``, as `_TautCords.add_to`."""
+        matrix += (self.stiff * self.moved).astype(precision)[:, :, None, None] * self.moved.astype(precision)
+        for i in range(3):
+            for j in range(3):
+                initial[i, j] = initial.get((i, j), np.zeros(())) + self.turned[i, j]
+
+
+@dataclass(frozen=True, eq=False)
 class _Group:
     """Elements of one region at all angles: F = 1 + H, F_0 (3, 3, e, q), and the elements' numbers and bulk moduli."""
 
@@ -287,48 +324,45 @@ class _Group:
             direct = _FirstInvariant(fg, first, 2 * c * slope * weights, 4 * c**2 * curvature * weights)
             h = pressed - direct.slope * first / 3
             stress = direct.slope * fg + h * q_inverse
-        directions = []
-        for layer in cords:
-            for before in layer.directions:
-                d = np.einsum("ij...,j...->i...", self.inflated, before)[..., None]
-                a = f[:, 0] * d[0] + f[:, 1] * d[1] + f[:, 2] * d[2]
-                length = np.sqrt((a * a).sum(axis=0))
-                slope, curvature = layer.slopes(length)
-                pull = slope / length * weights / 2
-                stress += (pull * a)[:, None] * d
-                directions.append((a, d, pull, (curvature * weights / 2 - pull) / length**2))
-        bent: tuple[Array, Array, Array] | None = None
-        if blocks is not None:
-            n, t = (np.einsum("ij...,j...->i...", self.inflated, d)[..., None] for d in blocks.directions)
-            a, c = (f[:, 0] * d[0] + f[:, 1] * d[1] + f[:, 2] * d[2] for d in (n, t))
-            moved, stiff = a[:, None] * t + c[:, None] * n, -blocks.missing * weights
-            slope = stiff * (a * c).sum(axis=0)
-            stress += slope * moved
-            bent = moved, stiff, slope * (t[:, None] * n + n[:, None] * t)
+        taut = [cord for layer in cords for cord in self._taut(f, layer, weights)]
+        for cord in taut:
+            stress += (cord.pull * cord.along)[:, None] * cord.direction
+        bent = None if blocks is None else self._bent(f, blocks, weights)
+        if bent is not None:
+            stress += bent.slope * bent.moved
         if precision is None:
             return stress.reshape(9, *volume.shape), np.zeros(0), np.zeros(0)
         matrix = self._matrix(q_inverse, direct, pressed, h, precision, matrix)
-        diagonal: dict[tuple[int, int], Array] = {}
+        initial: dict[tuple[int, int], Array] = {}
         if direct is not None:
-            diagonal = {(i, j): direct.slope * metric[i, j] for i, j in along}
-        for a, d, pull, stiff in directions:
-            dyad = (a[:, None] * d).astype(precision)
-            stiffened = (stiff * dyad).astype(precision)
-            matrix += stiffened[:, :, None, None] * dyad
-            for i in range(3):
-                for j in range(3):
-                    diagonal[i, j] = diagonal.get((i, j), np.zeros(())) + pull * (d[i] * d[j])
+            initial = {(i, j): direct.slope * metric[i, j] for i, j in along}
+        for cord in taut:
+            cord.add_to(matrix, initial, precision)
         if bent is not None:
-            moved, stiff, initial = bent
-            matrix += (stiff * moved).astype(precision)[:, :, None, None] * moved.astype(precision)
-            for i in range(3):
-                for j in range(3):
-                    diagonal[i, j] = diagonal.get((i, j), np.zeros(())) + initial[i, j]
-        for (i, j), value in diagonal.items():
+            bent.add_to(matrix, initial, precision)
+        for (i, j), value in initial.items():
             for k in range(3):
                 matrix[k, i, k, j] += value
         shape = (9, *volume.shape)
         return stress.reshape(shape), matrix.reshape(9, *shape), (volume * weights * q_inverse).reshape(shape)
+
+    def _taut(self, f: Array, layer: CordLayer, weights: Array) -> Iterator[_TautCords]:
+        """The cords of a layer, by direction."""
+        for before in layer.directions:
+            d = np.einsum("ij...,j...->i...", self.inflated, before)[..., None]
+            a = f[:, 0] * d[0] + f[:, 1] * d[1] + f[:, 2] * d[2]
+            length = np.sqrt((a * a).sum(axis=0))
+            slope, curvature = layer.slopes(length)
+            pull = slope / length * weights / 2
+            yield _TautCords(a, d, pull, (curvature * weights / 2 - pull) / length**2)
+
+    def _bent(self, f: Array, blocks: TreadBlocks, weights: Array) -> _BentBlocks:
+        """The blocks of a patterned tread."""
+        n, t = (np.einsum("ij...,j...->i...", self.inflated, d)[..., None] for d in blocks.directions)
+        a, c = (f[:, 0] * d[0] + f[:, 1] * d[1] + f[:, 2] * d[2] for d in (n, t))
+        moved, stiff = a[:, None] * t + c[:, None] * n, -blocks.missing * weights
+        slope = stiff * (a * c).sum(axis=0)
+        return _BentBlocks(moved, stiff, slope, slope * (t[:, None] * n + n[:, None] * t))
 
     @staticmethod
     def _matrix(
