@@ -116,3 +116,28 @@ def test_a_studys_own_table_is_never_replaced_by_a_run(here: Path, capfd: pytest
     assert main(["run", "mine.toml", "--out", ".", "--force"]) == 2
     assert "is an input" in capfd.readouterr().err
     assert content(here) == before
+
+
+#: Of the user, in the places where commands keep finished work and write their files.
+OTHERS = (
+    "notes.txt", ".progress/notes.txt", ".progress/0123456789abcdef/notes.txt", ".progress-2/notes.txt",
+    ".progress-mine/a.txt", "cases/notes.txt", "pictures/notes.txt", "again/notes.txt", "effects/notes.txt",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "command", [each for each in WRITING if each.words in ("compare", "plan", "isolability")], ids=lambda each: each.name
+)
+def test_other_files_in_the_folder_of_results_stay(
+    command: Command, here: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    out = here / "out"
+    for name in OTHERS:
+        (out / name).parent.mkdir(parents=True, exist_ok=True)
+        (out / name).write_text("mine")
+    before = content(here)
+    for force in ([], ["--force"]):
+        assert call(command, capfd, out, *force)[0] == 0
+        unchanged(before, here)
+        # Nothing that the command has kept for a later attempt is left.
+        assert [path for path in out.rglob("*") if path.suffix == ".npz"] == []

@@ -6,10 +6,11 @@ import dataclasses
 import functools
 import hashlib
 import json
-import shutil
+import re
 import sys
 import zipfile
 from collections.abc import Hashable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -20,12 +21,14 @@ from tyrefem import library
 from tyrefem.effects import shipped_effects
 from tyrefem.inputs.study import StudyData
 from tyrefem.interruption import interruption_delayed
-from tyrefem.output import atomic_path, jsonable
+from tyrefem.output import atomic_path, jsonable, remove_temporary
 from tyrefem.plugins import sent
 from tyrefem.sizes import completed_materials
 
 #: Folder within ``--out`` that holds finished simulations until the command ends.
 PROGRESS = ".progress"
+#: Number of digits of a key in the name of its folder, and of a question in the name of its answer.
+KEY, QUESTION = 16, 24
 
 
 @dataclass(eq=False)
@@ -41,10 +44,10 @@ class AnswerStore:
 
     def resume(self, key: str) -> int:
         """Open the answers of a key, delete those of other keys, and return the number of answers."""
-        self._place = self.folder / key[:16]
+        self._place = self.folder / key[:KEY]
         for other in self.folder.glob("*"):
             if other != self._place:
-                shutil.rmtree(other, ignore_errors=True)
+                _remove_answers(other)
         self.resumed = self.count
         return self.resumed
 
@@ -79,12 +82,32 @@ class AnswerStore:
         return f"{self.count} finished simulations are kept; the same command resumes from there"
 
     def clear(self) -> None:
-        """Delete the folder, at the end of the command."""
-        shutil.rmtree(self.folder, ignore_errors=True)
+        """Delete the answers, at the end of the command, and the folder if nothing else is in it."""
+        remove_store(self.folder)
 
     def _file(self, name: str, question: Any) -> Path:
         assert self._place is not None, "open the store first"
-        return self._place / f"{name}-{digest(plain(question))[:24]}.npz"
+        return self._place / f"{name}-{digest(plain(question))[:QUESTION]}.npz"
+
+
+def remove_store(folder: Path) -> None:
+    """Delete the answers in a folder of a store, and the folder if nothing else is in it."""
+    for place in folder.glob("*"):
+        _remove_answers(place)
+    with suppress(OSError):
+        folder.rmdir()
+
+
+def _remove_answers(place: Path) -> None:
+    """Delete the answers of one key. Other files, and folders of other names, are the user's."""
+    if not re.fullmatch(f"[0-9a-f]{{{KEY}}}", place.name) or not place.is_dir() or place.is_symlink():
+        return
+    remove_temporary(place)
+    for file in place.glob(f"*-{'[0-9a-f]' * QUESTION}.npz"):
+        with suppress(OSError):
+            file.unlink()
+    with suppress(OSError):
+        place.rmdir()
 
 
 def effects_source() -> str:

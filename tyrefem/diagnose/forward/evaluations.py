@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import pickle
-import shutil
 import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
@@ -21,7 +20,7 @@ from tyrefem.diagnose.forward.forward_model import ForwardModel
 from tyrefem.diagnose.forward.worker_queues import HomedTask, WorkerQueues, Workers, started_workers
 from tyrefem.inputs.study import StudyData
 from tyrefem.output import jsonable, versions
-from tyrefem.variants.answer_store import AnswerStore, digest, effects_source, plain, study_digest
+from tyrefem.variants.answer_store import AnswerStore, digest, effects_source, plain, remove_store, study_digest
 
 if TYPE_CHECKING:
     from tyrefem.diagnose.forward.sampling import SensorSampling
@@ -48,7 +47,7 @@ class ProgressStore(AnswerStore):
     def clear(self) -> None:
         """Delete the stored evaluations of all looks, after the diagnosis is finished."""
         for folder in (self.folder, *self.folder.parent.glob(f"{self.folder.name}-*")):
-            shutil.rmtree(folder, ignore_errors=True)
+            remove_store(folder)
 
 
 def key_of(model: ForwardModel) -> str:
