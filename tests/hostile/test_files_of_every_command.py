@@ -125,9 +125,11 @@ OTHERS = (
 )  # fmt: skip
 
 
-@pytest.mark.parametrize(
-    "command", [each for each in WRITING if each.words in ("compare", "plan", "isolability")], ids=lambda each: each.name
-)
+#: Of the commands that keep finished work for a later attempt, the quick ones.
+KEEPING = [each for each in WRITING if each.words in ("compare", "plan", "isolability")]
+
+
+@pytest.mark.parametrize("command", KEEPING, ids=lambda command: command.name)
 def test_other_files_in_the_folder_of_results_stay(
     command: Command, here: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import filecmp
 import os
 import re
 import shutil
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -95,7 +97,7 @@ def new(
         raise InputError("exists and may have been edited; replace it with --force", file=out, field="--out")
     target = out or target
     place_of_output(target.parent)
-    files = {target: source} | {target.parent / name: source.parent / name for name in _companions(kind, source)}
+    files = {target: source, **_copies(source, target, _companions(kind, source), force=force)}
     first_line, note = _of_the_other_tyre(kind, source)
     with results_file(target, (".toml",), force=force), interruption_delayed():
         for place, file in files.items():
@@ -109,6 +111,22 @@ def new(
     if note:
         say(f"note: {note}")
     say(f"edit it, then: tyrefem check {as_argument(target)}")
+
+
+def _copies(source: Path, target: Path, names: Iterable[Path], *, force: bool) -> dict[Path, Path]:
+    """The files beside a study that are copied with it: copy -> file.
+
+    Raises
+    ------
+    InputError : another file stands in the place of a copy.
+    """
+    copies = {target.parent / name: source.parent / name for name in names}
+    copies = {place: file for place, file in copies.items() if place.resolve() != file.resolve()}
+    for place, file in copies.items():
+        if os.path.lexists(place) and not force and not (place.is_file() and filecmp.cmp(place, file, shallow=False)):
+            message = f"would be overwritten by that of {source.parent.name}; choose another folder, or replace it with"
+            raise InputError(f"{message} --force", file=place, field="--out")
+    return copies
 
 
 def _of_the_other_tyre(kind: str, source: Path) -> tuple[str, str]:

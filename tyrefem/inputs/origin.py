@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import os
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from tyrefem.errors import InputError
 from tyrefem.inputs.study_file import write_study
 from tyrefem.inputs.study_plugins import plugin_summary
-from tyrefem.output import versions
+from tyrefem.output import unguarded, versions
 
 if TYPE_CHECKING:
     from tyrefem.inputs.study import StudyData
@@ -51,8 +54,27 @@ class StudyOrigin:
         target, read = folder / self.file, self.study.file
         return () if read is not None and target.resolve() == read.resolve() else (self.file,)
 
+    def wrote(self, file: Path) -> bool:
+        """Whether a command has written this file of a study, not the user: by its first line."""
+        with suppress(OSError), file.open("rb") as stream:
+            return stream.readline().decode(errors="replace").strip() == WRITTEN
+        return False
+
+    def check(self, folder: Path) -> None:
+        """Raise an error if `write` would replace a file of the user, where no command guards these.
+
+        Raises
+        ------
+        InputError : such a file stands in the folder.
+        """
+        for name in self.names(folder):
+            if unguarded() and os.path.lexists(folder / name) and not self.wrote(folder / name):
+                message = f"would be overwritten by the study '{self.study.name}'; choose another folder, or move it"
+                raise InputError(message, file=folder / name)
+
     def write(self, folder: Path) -> tuple[str, ...]:
-        """Write the study into a folder, unless its own file stands there; return the names."""
+        """Write the study into a folder, unless its own file stands there; return the names. Errors as of `check`."""
+        self.check(folder)
         names = self.names(folder)
         for name in names:
             write_study(self.study.data, self.study.folder, folder / name, comment=WRITTEN)

@@ -76,6 +76,11 @@ def guarded(guard: WriteGuard | None) -> Iterator[None]:
         _guard = before
 
 
+def unguarded() -> bool:
+    """True if no command guards the user's files: a call from Python."""
+    return _guard is _NO_GUARD
+
+
 @contextmanager
 def reading(arguments: Sequence[str] = ()) -> Iterator[None]:
     """Record the files read in this block as inputs of one command, and the folders that it writes for `written_to`.

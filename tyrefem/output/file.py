@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import zipfile
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
@@ -49,8 +49,11 @@ def results_file(
         raise InputError(f"'{path}' must end with {' or '.join(suffixes)}", field="--out")
     guard = _FileGuard()
     beside = () if origin is None else origin.names(path.parent)
-    for file in (path, *map(Path, also), *(path.parent / name for name in beside)):
-        guard.check(Path(os.path.abspath(file)), force=force)
+    for file in (path, *map(Path, also)):
+        guard.check(Path(os.path.abspath(file)), made_by_this_tool, force=force)
+    for name in beside:
+        assert origin is not None
+        guard.check(Path(os.path.abspath(path.parent / name)), origin.wrote, force=force)
     with guarded(guard):
         yield path
         if origin is not None:
@@ -60,7 +63,8 @@ def results_file(
 class _FileGuard(WriteGuard):
     """Refuses to overwrite files that this command has read."""
 
-    def check(self, path: Path, *, force: bool) -> None:
+    def check(self, path: Path, ours: Callable[[Path], bool], *, force: bool) -> None:
+        """Raise an error if a file cannot be written, or is there and not ``ours``."""
         place_of_output(path.parent)
         above = path.parent
         while not above.exists():
@@ -70,7 +74,7 @@ class _FileGuard(WriteGuard):
         if path.is_symlink() and not path.exists():
             raise InputError("is a link to nothing: mend or remove it", file=path, field="--out")
         self.before_writing(path)
-        if path.exists() and not force and not made_by_this_tool(path):
+        if path.exists() and not force and not ours(path):
             raise InputError("exists and was not made by tyrefem; replace it with --force", file=path, field="--out")
 
     def before_writing(self, path: Path) -> None:

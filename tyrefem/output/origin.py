@@ -13,6 +13,9 @@ class ResultsOrigin(Protocol):
     def names(self, folder: Path) -> Sequence[str]:
         """The files that `write` writes into a folder."""
 
+    def wrote(self, file: Path) -> bool:
+        """Whether `write` has written this file, not the user."""
+
     def write(self, folder: Path) -> Sequence[str]:
         """Write these files; return their names."""
 

@@ -156,6 +156,8 @@ def write_tables(result: ResultData, folder: Path, *, parquet: bool = False) -> 
     """
     from tyrefem.simulation.stored_result import FILE, write_result
 
+    origin = StudyOrigin(result.study)
+    origin.check(folder)
     if parquet:
         import pandas as pd
 
@@ -181,5 +183,5 @@ def write_tables(result: ResultData, folder: Path, *, parquet: bool = False) -> 
                 whole = result.readings.assign(**{"contained-air_pressure_Pa": result.gas_pressure})
             write_parquet(whole, (folder / name).with_suffix(".parquet"))
     write_result(result, folder / FILE)
-    StudyOrigin(result.study).write(folder)
+    origin.write(folder)
     return write_json(summary(result), folder / "summary.json")

@@ -57,6 +57,8 @@ def save(design: DesignData, folder: Path, *, pictures: bool = True) -> dict[str
     With a reduced model, also ``errors.csv``: the largest error of every answer in fresh full runs.
     Files of an earlier question are removed; its summary lists them.
     """
+    origin = StudyOrigin(design.study)
+    origin.check(folder)
     before, written = earlier(folder), []
     for part in design.parts:
         if isinstance(part, Responses) and len(part.swept.outcomes) > ROWS_AT_ONCE:
@@ -65,7 +67,7 @@ def save(design: DesignData, folder: Path, *, pictures: bool = True) -> dict[str
             written += write_table(part.table, folder, part.name)
     if design.swept is not None and design.swept.certificate is not None:
         written += write_errors(design.swept, folder)
-    written += StudyOrigin(design.study).write(folder)
+    written += origin.write(folder)
     summary = summarised(design)
     if pictures:
         written += write_page(design, summary, folder)

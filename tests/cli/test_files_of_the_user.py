@@ -1,0 +1,59 @@
+"""Files of the user beside what is written: tables of a copied study, a study of the same name, results from Python."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+import tyrefem as tf
+from tyrefem.cli import main
+from tyrefem.errors import InputError
+from tyrefem.inputs.origin import WRITTEN
+
+QUICK = {"mesh.size": "15 mm", "mesh.element": "P1", "drive.duration": "20 s"}
+#: A file that the user has edited since `tyrefem new` wrote it.
+EDITED = '# made by: tyrefem new study mine\ntitle = "mine"\n'
+
+
+def test_a_copied_study_does_not_replace_tables_beside_it(here: Path, refused: Callable[..., str]) -> None:
+    (here / "run-1.csv").write_text("mine")
+    words = ("new", "study", "second", "--from", "example-validation", "--out", "second.toml")
+    assert "run-1.csv: --out: would be overwritten by that of example-validation" in refused(*words)
+    assert [path.name for path in here.iterdir()] == ["run-1.csv"]
+    assert (here / "run-1.csv").read_text() == "mine"
+    assert main([*words, "--force"]) == 0
+    assert len(tf.study("second.toml").measured) == 3
+    # Equal tables are no loss, and a copy beside its source shares them.
+    (here / "second.toml").unlink()
+    assert main([*words]) == 0
+    assert main(["new", "study", "third", "--from", "second.toml", "--out", "third.toml"]) == 0
+    assert len(tf.study("third.toml").measured) == 3
+
+
+def test_a_model_does_not_replace_a_study_of_its_name(here: Path, refused: Callable[..., str]) -> None:
+    (here / "tyre.toml").write_text(EDITED)
+    settings = [word for key, value in QUICK.items() for word in ("--set", f"{key}={value}")]
+    for command, suffix in (("export", "npz"), ("explore", "html")):
+        error = refused(command, "nasa-22x5.5-8pr", *settings, "--out", f"tyre.{suffix}")
+        assert "tyre.toml: --out: exists and was not made by tyrefem" in error
+    assert (here / "tyre.toml").read_text() == EDITED
+    assert [path.name for path in here.iterdir()] == ["tyre.toml"]
+
+
+def test_a_result_from_python_does_not_replace_another_study(here: Path) -> None:
+    result = tf.study("nasa-22x5.5-8pr", QUICK).run()
+    (here / "study.toml").write_text(EDITED)
+    with pytest.raises(InputError, match=r"study\.toml: would be overwritten by the study 'nasa-22x5\.5-8pr'"):
+        result.save(here)
+    assert [path.name for path in here.iterdir()] == ["study.toml"]
+    assert (here / "study.toml").read_text() == EDITED
+    result.save("out")
+    result.save("out")
+    assert Path("out/study.toml").read_text().startswith(WRITTEN)
+    # By its own file, it is the user's study, and stays as it is.
+    text = Path("out/study.toml").read_text().replace(WRITTEN, "# mine")
+    (here / "study.toml").write_text(text)
+    tf.study("study.toml").run().save(here)
+    assert (here / "study.toml").read_text() == text
