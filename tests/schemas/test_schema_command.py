@@ -46,6 +46,21 @@ def with_schemas(here: Path) -> Path:
     return here
 
 
+def test_rules_that_a_person_added_to_the_settings_stay(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["schema"]) == 0
+    edited = (here / SETTINGS).read_text(encoding="utf-8") + "\n[formatting]\nindent_tables = true\n"
+    (here / SETTINGS).write_text(edited, encoding="utf-8")
+    capsys.readouterr()
+    assert main(["schema"]) == 0
+    assert "is your own and was kept" in capsys.readouterr().out
+    assert (here / SETTINGS).read_text(encoding="utf-8") == edited
+    assert main(["schema", "--force"]) == 0
+    assert "formatting" not in (here / SETTINGS).read_text(encoding="utf-8")
+    # For another folder, unchanged settings are written again.
+    assert main(["schema", "--out", "other"]) == 0
+    assert 'path = "other/study.json"' in (here / SETTINGS).read_text(encoding="utf-8")
+
+
 def test_it_writes_schemas_and_settings(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["schema"]) == 0
     kinds = {"study", "section", "material", "sweep", "rig", "thermal", "answers"}

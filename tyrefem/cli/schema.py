@@ -23,7 +23,6 @@ def schema(
     """
     from tyrefem import __version__
     from tyrefem.output import atomic_path, write_json
-    from tyrefem.output.file import made_by_this_tool
     from tyrefem.output.folder import results_folder
     from tyrefem.schemas.line import BEGINS, SETTINGS
     from tyrefem.schemas.written import settings, texts
@@ -39,7 +38,7 @@ def schema(
     names = ", ".join(name.removesuffix(".json") for name in made)
     say(f"{len(made)} schemas in {out}: {names}")
     place, rules = Path(SETTINGS), settings(os.path.relpath(out))
-    kept = os.path.lexists(place) and not force and not made_by_this_tool(place)
+    kept = os.path.lexists(place) and not force and not _written_here(place)
     answer_with({"folder": out, "schemas": [*made], "settings": None if kept else place})
     if kept:
         say(f"{place} is your own and was kept; these lines in it tell the schemas:")
@@ -49,6 +48,16 @@ def schema(
             temporary.write_text(rules, encoding="utf-8")
         say(f"{place} here: Taplo, and VS Code with the extension 'Even Better TOML', complete and check")
     say(f"a single file says its schema in its first line: {BEGINS}{out.as_posix()}/study.json")
+
+
+def _written_here(place: Path) -> bool:
+    """Whether the editor's settings are as this command wrote them; rules that a person added would be lost."""
+    from tyrefem.schemas.written import are_settings
+
+    try:
+        return are_settings(place.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError):
+        return False
 
 
 #: Place among the commands.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 from tyrefem.schemas.answer_schema import answers_schema
@@ -14,6 +15,16 @@ def texts() -> dict[str, str]:
     """File name -> text of every schema."""
     made = {f"{kind}.json": schema() for kind, (_, schema) in FILES.items()} | {"answers.json": answers_schema()}
     return {name: json.dumps(schema, indent=1, ensure_ascii=False) + "\n" for name, schema in made.items()}
+
+
+def are_settings(text: str) -> bool:
+    """Whether a text is that of `settings` for some folder, without changes by a person.
+
+    >>> are_settings(settings("schemas")), are_settings(settings("my/schemas") + "[formatting]\\n")
+    (True, False)
+    """
+    folder = re.search(r'path = "(.*)/[^/"]+\.json"', text)
+    return folder is not None and text == settings(folder[1])
 
 
 def settings(folder: str) -> str:
