@@ -23,6 +23,7 @@ from tyrefem.output import (
     SUMMARY,
     TEMPORARY,
     WriteGuard,
+    atomic_path,
     command_arguments,
     guarded,
     inputs_read,
@@ -263,7 +264,8 @@ class ResultsFolder(WriteGuard):
         elif self._being_written and self._earlier_summary_text is None:
             (self.folder / SUMMARY).unlink(missing_ok=True)
         elif self._being_written:
-            (self.folder / SUMMARY).write_text(str(self._earlier_summary_text), encoding="utf-8")
+            with atomic_path(self.folder / SUMMARY) as temporary:
+                temporary.write_text(str(self._earlier_summary_text), encoding="utf-8")
 
     def _write_summary(self, *, complete: bool) -> None:
         self._refuse_input(self.folder / SUMMARY)
