@@ -41,6 +41,10 @@ class InputError(ValueError):
         return InputError(self.message, field=joined or None, file=self.file or file)
 
 
+class OutputError(InputError):
+    """A file that cannot be written, as on a full disk: no fault of a study, whatever was tried with it."""
+
+
 @dataclass(frozen=True)
 class InputWarning:
     """Input that is allowed, but is probably a mistake. ``field`` and ``file`` as in `InputError`.

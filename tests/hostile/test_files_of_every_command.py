@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
+import re
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -143,3 +147,31 @@ def test_other_files_in_the_folder_of_results_stay(
         unchanged(before, here)
         # Nothing that the command has kept for a later attempt is left.
         assert [path for path in out.rglob("*") if path.suffix == ".npz"] == []
+
+
+def test_a_full_disk_is_named_with_the_file_that_has_no_room(
+    here: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(*_: object, **__: object) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    (plan,) = (each for each in WRITING if each.words == "plan")
+    monkeypatch.setattr("numpy.savez", full)
+    code, err = call(plan, capfd, "out")
+    assert code == 2
+    assert re.fullmatch(r"tyrefem: \S+/\.progress/\S+\.npz: cannot be written: No space left on device\n", err)
+
+
+def test_a_card_without_room_names_the_copy_not_its_source(here: Path) -> None:
+    """Files of this process end after 100 bytes, as on a full disk."""
+    code = (
+        "import resource, sys\n"
+        "from tyrefem.cli import main\n"
+        "resource.setrlimit(resource.RLIMIT_FSIZE, (100, 100))\n"
+        "sys.exit(main(['new', 'study', 'copied', '--from', 'example-validation', '--out', 'copied.toml']))\n"
+    )
+    # Without bytecode (-B), which would be cut, too.
+    done = subprocess.run([sys.executable, "-B", "-c", code], capture_output=True, text=True, check=False)
+    assert done.returncode == 2, done.stderr
+    assert done.stderr == f"tyrefem: {here}/copied.toml: cannot be written: File too large\n"
+    assert not Path("copied.toml").exists()

@@ -5,7 +5,6 @@ from __future__ import annotations
 import filecmp
 import os
 import re
-import shutil
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Annotated, Any
@@ -102,10 +101,11 @@ def new(
     with results_file(target, (".toml",), force=force), interruption_delayed():
         for place, file in files.items():
             with atomic_path(place) as temporary:
-                shutil.copyfile(file, temporary)
                 if place == target:
                     text = without_line(file.read_text(encoding="utf-8-sig"))
                     temporary.write_text(schema_line(kind, target) + first_line + text, encoding="utf-8")
+                else:
+                    temporary.write_bytes(file.read_bytes())
     answer_with({"kind": kind, "file": target, "copy_of": source, "note": note})
     say(f"{target} written, a copy of {source.parent.name if kind == 'study' else source.stem}")
     if note:

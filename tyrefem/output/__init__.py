@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 import tyrefem
-from tyrefem.errors import InputError
+from tyrefem.errors import InputError, OutputError
 from tyrefem.interruption import interruption_delayed
 
 
@@ -180,7 +180,7 @@ def _cannot_be_written(path: Path, temporary: Path) -> Iterator[None]:
         yield
     except OSError as error:
         if error.filename is None or str(error.filename).startswith((str(temporary), str(path.parent))):
-            raise InputError(f"cannot be written: {error.strerror or error}", file=path) from error
+            raise OutputError(f"cannot be written: {error.strerror or error}", file=path) from error
         raise
 
 
@@ -192,7 +192,7 @@ def atomic_path(path: str | Path) -> Iterator[Path]:
 
     Raises
     ------
-    InputError : the folder or the file cannot be written, or the command may not write this file.
+    InputError : the folder or the file cannot be written (`OutputError`), or the command may not write this file.
 
     >>> import tempfile
     >>> target = Path(tempfile.mkdtemp()) / "out" / "summary.json"

@@ -21,7 +21,7 @@ from tyrefem.diagnose.layout.isolability import READING_INTERVAL
 from tyrefem.diagnose.options import SimulationWork
 from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
 from tyrefem.diagnose.unknowns.unknown import Unknown, sensor_unknowns
-from tyrefem.errors import InputError
+from tyrefem.errors import InputError, OutputError
 from tyrefem.inputs.study import StudyData
 from tyrefem.mechanics.strain_laws import strain_law
 from tyrefem.plan.beliefs import NOISE, Beliefs
@@ -127,6 +127,8 @@ def planned_readings(
     with evaluating(model, work.workers, work.store) as evaluations:
         try:
             at_hand = work.known or responses(evaluations, everything, work.progress)
+        except OutputError:
+            raise
         except InputError as error:
             raise InputError(f"a drive of the plan cannot run: {error}", field="plan.limits", file=study.file) from None
         sensitive = sensitivities(samplings, everything, 0, [response.of(everything) for response in at_hand])
