@@ -178,6 +178,14 @@ def test_a_large_drum_is_a_flat_road_and_a_small_one_is_softer(tyre: Pressing) -
     assert drum.gaps.min() > -1e-9
 
 
+def test_the_gap_of_a_huge_drum_is_that_of_a_flat_road_to_rounding() -> None:
+    """Rounded to the drum's radius, 1e-9 m here, it kept forces with friction from settling."""
+    points = np.array([[0.0, 0.05, -0.1], [0.29, 0.288, 0.3], [0.0, 0.05, -0.05]])
+    flat, _ = Road(camber=0.02).gaps(points, 0.3)
+    drum, _ = Road(1e8, 0.02).gaps(points, 0.3)
+    assert drum == pytest.approx(flat + points[0] ** 2 / 1e8, abs=1e-15)
+
+
 def test_pressure_stiffens() -> None:
     soft, hard = (Pressing(PlainTyre().state(pressure=p, along=10)).at_deflection(0.015, 24).load for p in (1.2e5, 2e5))
     assert 1.15 * soft < hard < 2e5 / 1.2e5 * soft

@@ -63,10 +63,11 @@ class Road:
             gap, along, down = distance - y, np.zeros_like(y), np.ones_like(y)
         else:
             radius = self.drum_diameter / 2
-            depth = distance + radius - y
+            below = distance - y
+            depth = radius + below
             length = np.hypot(x, depth)
             # sqrt(x^2 + depth^2) - radius without cancellation for a large drum.
-            gap = (x * x + (depth - radius) * (depth + radius)) / (length + radius)
+            gap = (x * x + below * (depth + radius)) / (length + radius)
             along, down = -x / length, depth / length
         cos, sin = math.cos(self.camber), math.sin(self.camber)
         return gap, np.stack([along, cos * down, sin * down])
