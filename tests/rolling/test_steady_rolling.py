@@ -46,6 +46,10 @@ def test_without_friction_it_is_the_frictionless_footprint(drum: float) -> None:
     width = len(rolled.grid.influence.places[0]) - across
     ours = rolled.pressure[middle : middle + rolled.grid.last + 1, width:]
     assert ours == pytest.approx(footprint.pressure[: len(ours)], abs=1e-8 * footprint.pressure.max())
+    patch = rolled.patch
+    for name in ("length", "width", "area", "mean_pressure"):
+        assert getattr(patch, name) == pytest.approx(getattr(footprint, name), rel=1e-6)
+    assert patch.peak_pressure == pytest.approx(footprint.pressure.max(), rel=1e-8)
 
 
 def test_free_rolling_has_no_force_to_speak_of(free: RolledTyre) -> None:

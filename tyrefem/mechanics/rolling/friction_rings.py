@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
-from tyrefem.mechanics.footprint.footprint import BEYOND
+from tyrefem.mechanics.rolling.contact_patch import contact_angles
 
 if TYPE_CHECKING:
     from tyrefem.mechanics.rolling.roll import RolledStudy
@@ -98,22 +98,3 @@ class FrictionRings(Brief):
             float((1 + slip) * np.cos(angle)),
             state.travel,
         )
-
-
-def contact_angles(pressure: Array) -> Array:
-    """(m,) length of contact of each ring in steps of the angle, for a pressure (n_angles, m), Pa.
-
-    Both ends lie between two angles, as those of a footprint (`Footprint.half_lengths`).
-    """
-    return np.array([_ends(column) + _ends(column[::-1]) for column in pressure.T])
-
-
-def _ends(pressure: Array) -> float:
-    """From the middle between the first and last points with pressure (n,) to the end behind the last."""
-    touching = np.flatnonzero(pressure > 0)
-    if not len(touching):
-        return 0.0
-    last = int(touching[-1])
-    half = (last - int(touching[0])) / 2
-    before = max(float(pressure[last - 1]) if last else 0.0, float(pressure[last]))
-    return half + min(float(pressure[last]) / before + BEYOND, 1.0)

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from tyrefem.brief import Brief
 from tyrefem.mechanics.footprint.footprint import BEYOND
 from tyrefem.mechanics.rolling.body_loss import BodyLoss
+from tyrefem.mechanics.rolling.contact_patch import ContactPatch
 from tyrefem.mechanics.rolling.friction import OPEN, SLIP, FrictionForces
 from tyrefem.mechanics.rolling.rolling_grid import RollingGrid
 from tyrefem.mechanics.rolling.rolling_motion import RollingMotion
@@ -116,6 +117,11 @@ class RolledTyre(Brief):
         """-M_z/F_y, m: how far behind the contact centre the side force acts; nan where there is none, but rounding."""
         _, side, load = self.force
         return float(-self.moment[2] / side) if abs(side) > ROUNDING * load else math.nan
+
+    @functools.cached_property
+    def patch(self) -> ContactPatch:
+        """Size and pressure of the contact."""
+        return ContactPatch.of(self.grid, self.pressure, float(self.force[2]))
 
     @property
     def sliding_share(self) -> float:

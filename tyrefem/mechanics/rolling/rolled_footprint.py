@@ -16,7 +16,7 @@ from tyrefem.materials.reads import FEM_ROLLING, key_of, values_read
 from tyrefem.mechanics.footprint.footprint import Footprint
 from tyrefem.mechanics.footprint.pressed_tyre import inputs
 from tyrefem.mechanics.footprint.strain_harmonics import StrainHarmonics
-from tyrefem.mechanics.rolling.friction_rings import FrictionRings, contact_angles
+from tyrefem.mechanics.rolling.friction_rings import FrictionRings
 from tyrefem.mechanics.rolling.lagging_strains import LaggingFootprint, LaggingStrains, strain_amplitudes
 from tyrefem.mechanics.rolling.roll import (
     TOLERANCE,
@@ -141,16 +141,13 @@ class RolledFootprint(LaggingFootprint):
         state, upright = rolled.state, rolled.wheel.pressed.footprint
         parts: dict[str, Any] = {part.name: getattr(upright, part.name) for part in fields(Footprint)}
         parts |= {"load": float(state.force[2]), "deflection": state.deflection}
-        influence = state.grid.influence
-        lengths = contact_angles(state.pressure) * state.grid.step * influence.places[0]
-        along, across = (width[influence.source[0]] for width in influence.tread.widths)
         return cls(
             **parts,
             rolling=state.added_fields,
             travel=state.travel * forward,
             friction=FrictionRings.of(rolled),
-            touched_length=float(lengths.max()),
-            touched_area=float(lengths @ (influence.lengths * across / along)),
+            touched_length=state.patch.length,
+            touched_area=state.patch.area,
             pressed=rolled.wheel.pressed,
             turn=state.grid.turn,
         )

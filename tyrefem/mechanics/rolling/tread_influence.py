@@ -119,11 +119,23 @@ class TreadInfluence(Brief):
     @functools.cached_property
     def lengths(self) -> Array:
         """(m,) tributary length of each point on the outline, m; both sides of a point on the mid plane."""
+        return self._whole(self.tread.widths[0])
+
+    @functools.cached_property
+    def axial_widths(self) -> Array:
+        """(m,) axial projection of `lengths`, m."""
+        return self._whole(self.tread.widths[1])
+
+    def _whole(self, widths: Array) -> Array:
         nodes, _ = self.source
-        lengths = self.tread.widths[0].copy()
-        if self.tread.half:
-            lengths[np.abs(self.tread.places[1]) <= ON_PLANE] *= 2.0
-        return np.asarray(lengths[nodes])
+        both = 2.0 if self.tread.half else 1.0
+        return np.asarray((widths * np.where(np.abs(self.tread.places[1]) <= ON_PLANE, both, 1.0))[nodes])
+
+    @functools.cached_property
+    def grooves(self) -> Array:
+        """(n, 2) axial intervals without tread, m."""
+        grooves = self.tread.grooves
+        return np.concatenate([grooves, -grooves[:, ::-1]]) if self.tread.half else grooves
 
     def solved(self, n: int) -> Array:
         """(3, m, 3, m) displacement per force amplitude of harmonic n, m per N per radian, with a cache."""
