@@ -102,3 +102,13 @@ def test_camber_leans_the_forces(here: Path) -> None:
 def test_bad_input_is_one_line(refused: Callable[..., str], arguments: list[str], words: str) -> None:
     given = [] if "--loads" in arguments else ["--loads", "8 kN, 12 kN"]
     assert words in refused("forces", STUDY, *given, *arguments, *COARSE)
+
+
+def test_camber_that_pushes_to_the_wrong_side_is_named(here: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    """Linear motion of the measured tyre: +23 N at 2 kN, -119 N at 5 kN; in large motion +69 and +174 N."""
+    points = ["--loads", "2 kN, 5 kN", "--slip-angles", "0 deg, 4 deg", "--slips", "none", "--cambers", "3 deg"]
+    line = ["forces", "measured-205-60r15", *points, "--no-pictures", "--out", "out", *COARSE]
+    assert main(line) == 0
+    words = "at 5000 N camber pushes the tyre away from the side to which it leans; linear motion is too stiff there"
+    assert words in capfd.readouterr().err
+    assert words in (here / "out" / "tyre.tir").read_text(encoding="utf-8")

@@ -76,7 +76,7 @@ def forces(
     from tyrefem.inputs.origin import StudyOrigin
     from tyrefem.mechanics.rolling.force_table import tyre_forces
     from tyrefem.mechanics.rolling.roll import NEEDS
-    from tyrefem.reports.forces import FILES, summary, write_files
+    from tyrefem.reports.forces import FILES, summary, warnings, write_files
 
     lists = {"loads": loads, "slip_angles": slip_angles, "slips": slips, "cambers": cambers}
     given: dict[str, Any] = {"motion": motion}
@@ -101,6 +101,7 @@ def forces(
             write_files(result, folder, pictures=pictures)
         except InputError as error:
             raise _placed(error, given, loaded) from None
+    warn(warnings(result))
     answer_with(summary(result))
     say(_words(result))
     say(f"results in {folder}")

@@ -39,12 +39,23 @@ def summary(forces: TyreForces) -> dict[str, Any]:
     }
 
 
+def warnings(forces: TyreForces) -> tuple[str, ...]:
+    """What a reader of the forces must know."""
+    loads = ", ".join(f"{load:.0f}" for load in forces.against_the_lean)
+    if not loads:
+        return ()
+    linear = forces.wheel.pressed.footprint.motion == "linear"
+    remedy = "; linear motion is too stiff there: take motion large" if linear else ""
+    return (f"at {loads} N camber pushes the tyre away from the side to which it leans{remedy}",)
+
+
 def write_files(forces: TyreForces, folder: Path, *, pictures: bool = True) -> None:
     """``forces.csv``, ``forces.json``, ``tyre.tir``, and with pictures ``forces.png``."""
     study = forces.study
     notes = (
         f"computed by tyrefem from the study {study.name}, not measured",
         f"pure slip; {MOTIONS[forces.wheel.pressed.footprint.motion]}, {_dynamics(forces)}",
+        *warnings(forces),
     )
     with atomic_folder(folder) as place:
         forces.table.to_csv(place / "forces.csv", index=False, float_format="%.9g", na_rep="nan", lineterminator="\n")
