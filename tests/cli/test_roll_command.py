@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from tyrefem.cli import main
+from tyrefem.cli.roll import _values
 
 STUDY = "nasa-22x5.5-8pr"
 COARSE = ["--set", "mesh.size=12 mm"]
@@ -23,12 +24,16 @@ def test_files_agree(here: Path, capfd: pytest.CaptureFixture[str]) -> None:
     assert numbers == json.loads((folder / "roll.json").read_text(encoding="utf-8"))
     assert numbers["F_y_N"] < 0 < numbers["F_x_N"]
     assert numbers["slip"] == pytest.approx(0.01, abs=1e-9)
+    assert numbers["rolling_resistance_coefficient"] == numbers["rolling_resistance_N"] / numbers["F_z_N"]
+    assert numbers["mean_contact_pressure_Pa"] * numbers["footprint_area_m2"] == pytest.approx(numbers["F_z_N"])
+    assert numbers["footprint_area_m2"] < numbers["footprint_length_m"] * numbers["footprint_width_m"]
     with (folder / "rings.csv").open(encoding="utf-8") as lines:
         power = [float(ring["friction_power_W"]) for ring in csv.DictReader(lines)]
     assert sum(power) == pytest.approx(numbers["friction_power_W"], rel=1e-6)
     with (folder / "contact.csv").open(encoding="utf-8") as lines:
         points = list(csv.DictReader(lines))
     assert {point["state"] for point in points} == {"0", "1", "2"}
+    assert numbers["peak_contact_pressure_Pa"] == pytest.approx(max(float(p["pressure_Pa"]) for p in points))
     for name in ("contact.png", "rings.png"):
         assert (folder / name).read_bytes().startswith(b"\x89PNG")
     import meshio
@@ -51,8 +56,16 @@ def test_a_curve(here: Path, capfd: pytest.CaptureFixture[str]) -> None:
     assert numbers["cornering_stiffness_N_rad"] > -forces[1] / float(rows[1]["slip_angle_rad"])
     # A tyre is softer than its tread alone, and stiffer forward than sideways.
     assert numbers["standing_longitudinal_stiffness_N_m"] > numbers["standing_lateral_stiffness_N_m"] > 1e4
+    # A contact that sticks with the moduli of the revolution rises slower than with those of a small push.
+    slope = numbers["cornering_stiffness_N_rad"]
+    assert numbers["relaxation_length_m"] >= slope / numbers["standing_lateral_stiffness_N_m"] > 0.05
+    assert numbers["relaxation_length_m"] > numbers["longitudinal_relaxation_length_m"] > 0
     assert 0.95 < -forces[2] / (0.6 * float(rows[2]["F_z_N"])) <= 1.0
     assert (here / "out" / "curve.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_the_middle_of_an_even_range_is_zero() -> None:
+    assert _values("slip_angle", "-6 deg:6 deg:7")[3] == 0.0
 
 
 def test_friction_on_the_footprint_in_large_motion(here: Path, capfd: pytest.CaptureFixture[str]) -> None:

@@ -11,6 +11,7 @@ from tyrefem.errors import InputError
 from tyrefem.mechanics.rolling.contact_body import ContactBody
 from tyrefem.mechanics.rolling.example_bodies import CYLINDER_RADIUS, beam, bristles, cylinder, string
 from tyrefem.mechanics.rolling.friction import OPEN, SLIP, STICK, Control, RollingContact
+from tyrefem.mechanics.rolling.standing import standing_stiffness
 
 pytestmark = pytest.mark.fast
 
@@ -117,8 +118,12 @@ def test_string_on_an_elastic_bed() -> None:
     problem = RollingContact(
         string(count, step, tension, bed, 1e-3), gaps, rigid(count, step, angle, 1), np.full(count, 1e6)
     )
-    side = -problem.solve().forces[:, 2]
+    solved = problem.solve()
+    side = -solved.forces[:, 2]
     assert side.sum() / angle == pytest.approx(2 * bed * (sigma + A) ** 2, rel=0.003)
+    # The force rises at first with the stiffness of the contact that sticks: relaxation length sigma + a.
+    lateral = standing_stiffness(problem.body, solved.states).lateral
+    assert side.sum() / angle / lateral == pytest.approx(sigma + A, rel=0.003)
     assert -(x * side).sum() / angle == pytest.approx(2 * bed * A * (sigma * (sigma + A) + A**2 / 3), rel=0.005)
 
 

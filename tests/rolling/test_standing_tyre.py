@@ -18,7 +18,7 @@ from tyrefem.mechanics.rolling.contact_body import ContactBody
 from tyrefem.mechanics.rolling.lossy_harmonics import LossyHarmonics
 from tyrefem.mechanics.rolling.roll import wheel_on_road
 from tyrefem.mechanics.rolling.rolling_motion import RollingMotion
-from tyrefem.mechanics.rolling.standing import StandingTyre, standing_stiffness
+from tyrefem.mechanics.rolling.standing import StandingTyre, as_it_rolls, standing_stiffness
 from tyrefem.mechanics.rolling.steady_rolling import RollingLoads, SteadyRolling
 from tyrefem.mechanics.rolling.tread_influence import PHASE, TreadInfluence
 
@@ -43,6 +43,7 @@ def test_the_amplitude_of_the_cards_is_their_modulus() -> None:
     body = ContactBody(rolled.grid.compliance(rolled.axes), rolled.grid.upstream)
     rolls = standing_stiffness(body, rolled.contact.states)
     stands = tyre().stiffness({region: law.modulus_amplitude for region, law in tyre().laws.items()})
+    assert as_it_rolls(rolled) == rolls
     assert stands.longitudinal == pytest.approx(rolls.longitudinal, rel=1e-9)
     assert stands.lateral == pytest.approx(rolls.lateral, rel=1e-9)
 

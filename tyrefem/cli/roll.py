@@ -147,7 +147,7 @@ def _values(name: str, text: str) -> float | list[float]:
         raise InputError(f"'{text}' is not from:to:number, like '-10 deg:10 deg:21' (number 2 to {MOST})", field=option)
     first, last = (read_quantity(option, part, unit) for part in parts[:2])
     count = int(parts[2])
-    return [first + (last - first) * k / (count - 1) for k in range(count)]
+    return [(first * (count - 1 - k) + last * k) / (count - 1) for k in range(count)]
 
 
 def _words(rolled: RolledStudy) -> str:
@@ -168,10 +168,15 @@ def _words(rolled: RolledStudy) -> str:
         lines.append(f"  pneumatic trail      {state.pneumatic_trail * 1e3:.2f} mm")
     if state.loss_power:
         lines.append(
-            f"  rolling resistance   {state.rolling_resistance:.2f} N, energy lost per metre; "
+            f"  rolling resistance   {state.rolling_resistance:.2f} N, coefficient "
+            f"{state.rolling_resistance / f_z:.5f}, energy lost per metre; "
             f"{state.loss_power:.5g} W in the rubber"
         )
+    patch = state.patch
     lines += [
+        f"  footprint            {patch.length * 1e3:.1f} mm long, {patch.width * 1e3:.1f} mm wide, "
+        f"{patch.area * 1e4:.1f} cm2; pressure {patch.mean_pressure / 1e3:.0f} kPa mean, "
+        f"{patch.peak_pressure / 1e3:.0f} kPa peak",
         f"  hysteresis           {hysteresis(rolled):.5g} W of the strain cycle, as in a drive",
         f"  rolling radius       {rolled.rolling_radius * 1e3:.2f} mm effective, "
         f"{state.loaded_radius * 1e3:.2f} mm loaded",
@@ -202,6 +207,8 @@ def _curve_words(curve: SlipCurve) -> str:
         curve.study.title,
         f"  cornering stiffness  {stiffness.cornering / 1e3:.2f} kN/rad; trail {stiffness.trail * 1e3:.1f} mm",
         f"  slip stiffness       {stiffness.slip / 1e3:.2f} kN",
+        f"  relaxation length    {curve.relaxation_lengths[1] * 1e3:.0f} mm of the side force, "
+        f"{curve.relaxation_lengths[0] * 1e3:.0f} mm of the longitudinal force",
         f"  standing tyre        {curve.standing.longitudinal / 1e3:.1f} N/mm forward, "
         f"{curve.standing.lateral / 1e3:.1f} N/mm sideways, of a small push",
         f"  greatest force       {peak['force_N']:.0f} N at {where}",

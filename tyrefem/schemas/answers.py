@@ -53,7 +53,12 @@ _ROLLED = {
     "effective_rolling_radius_m": "number: Travel per radian.", "loaded_radius_m": "number: Axle above the road.",
     "rings_friction_power_W": "table: z_m, power_W: friction power by ring of the tread.",
     "power_balance": "number?: Missing share of the power balance.",
-    "rolling_resistance_N": "number?: Rolling resistance.",
+    "footprint_length_m": "number: Greatest length of the contact.",
+    "footprint_width_m": "number: Width of the contact, with its grooves.",
+    "footprint_area_m2": "number: Area of the contact.", "mean_contact_pressure_Pa": "number: Load over area.",
+    "peak_contact_pressure_Pa": "number: Greatest pressure.",
+    "rolling_resistance_N": "number?: Power of the axle over speed: friction, and loss with rolling = true.",
+    "rolling_resistance_coefficient": "number?: The same over load.",
 }  # fmt: skip
 
 #: Command -> its keys.
@@ -206,6 +211,8 @@ ANSWERS: dict[str, Keys] = {
     "roll (curve)": {
         **_STUDY, **_VERSIONS, "varied": "text: slip_angle or slip.", "points": "list: The forces at every slip.",
         "peak*": "table?: Largest force, and where.",
+        "relaxation_length_m": "number: Of the side force: cornering stiffness over that of the contact that sticks.",
+        "longitudinal_relaxation_length_m": "number: Of the longitudinal force.",
         "*": "any: Stiffnesses of the curve.",
     },
     "forces": {

@@ -39,6 +39,9 @@ _POINT = {
     "turn_slip_1_m": "number: Curvature of the path.", "deflection_m": "number: Deflection.",
     "travel_m_rad": "number: Travel per radian of rotation.", "pneumatic_trail_m": "number?: Trail.",
     "loss_power_W": "number?: Power that the rubber loses.", "axle_power_W": "number?: Power of the axle.",
+    "footprint_length_m": "number: Greatest length of the contact.",
+    "footprint_width_m": "number: Width, with its grooves.", "footprint_area_m2": "number: Area of the contact.",
+    "mean_contact_pressure_Pa": "number: Load over area.", "peak_contact_pressure_Pa": "number: Greatest pressure.",
 }  # fmt: skip
 
 #: Place in an answer -> its keys.

@@ -158,6 +158,7 @@ class RolledStudy(Brief):
             },
             "power_balance": self.state.balance,
             "rolling_resistance_N": self.state.rolling_resistance,
+            "rolling_resistance_coefficient": self.state.rolling_resistance / float(self.state.force[2]),
             "harmonics": self.state.harmonics,
             "error": self.error,
             "motion": pressed.footprint.motion,
@@ -168,7 +169,7 @@ class RolledStudy(Brief):
 
 def row(wheel: WheelOnRoad, state: RolledTyre) -> dict[str, float]:
     """Motion, forces, moments, slip and friction power of a rolling tyre, SI as the keys state."""
-    (f_x, f_y, f_z), (m_x, m_y, m_z) = state.force, state.moment
+    (f_x, f_y, f_z), (m_x, m_y, m_z), patch = state.force, state.moment, state.patch
     return {
         "slip_angle_rad": state.motion.slip_angle,
         "slip": wheel.slip(state),
@@ -184,6 +185,11 @@ def row(wheel: WheelOnRoad, state: RolledTyre) -> dict[str, float]:
         "deflection_m": state.deflection,
         "travel_m_rad": state.travel,
         "pneumatic_trail_m": state.pneumatic_trail,
+        "footprint_length_m": patch.length,
+        "footprint_width_m": patch.width,
+        "footprint_area_m2": patch.area,
+        "mean_contact_pressure_Pa": patch.mean_pressure,
+        "peak_contact_pressure_Pa": patch.peak_pressure,
         "sliding_share": state.sliding_share,
         "friction_power_W": state.friction_power,
         "loss_power_W": state.loss_power,

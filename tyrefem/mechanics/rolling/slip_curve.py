@@ -28,7 +28,7 @@ from tyrefem.mechanics.rolling.roll import (
 )
 from tyrefem.mechanics.rolling.rolled import RolledTyre
 from tyrefem.mechanics.rolling.rolling_motion import RollingMotion
-from tyrefem.mechanics.rolling.standing import StandingStiffness, StandingTyre
+from tyrefem.mechanics.rolling.standing import StandingStiffness, StandingTyre, as_it_rolls
 from tyrefem.threads import one_thread
 
 if TYPE_CHECKING:
@@ -91,6 +91,16 @@ class SlipCurve(Brief):
         """Longitudinal and lateral stiffness of the standing tyre, where it rolls freely; moduli of small strain."""
         return StandingTyre(self.wheel.pressed, self.wheel.free(self.states[0].harmonics)).stiffness()
 
+    @functools.cached_property
+    def relaxation_lengths(self) -> tuple[float, float]:
+        """Of the longitudinal and the lateral force, m: the way in which a force that went on rising as at first would
+        reach its steady value after a small step of slip.
+
+        Slope over slip / stiffness of the contact that sticks, both with the moduli of the revolution (Pacejka 2012).
+        """
+        stiffness = as_it_rolls(self.wheel.free(self.states[0].harmonics))
+        return self.stiffness.slip / stiffness.longitudinal, self.stiffness.cornering / stiffness.lateral
+
     @property
     def table(self) -> Any:
         """pandas DataFrame of `roll.row`."""
@@ -124,6 +134,8 @@ class SlipCurve(Brief):
             "aligning_stiffness_Nm_rad": self.stiffness.aligning,
             "slip_stiffness_N": self.stiffness.slip,
             "pneumatic_trail_m": self.stiffness.trail,
+            "longitudinal_relaxation_length_m": self.relaxation_lengths[0],
+            "relaxation_length_m": self.relaxation_lengths[1],
             "standing_longitudinal_stiffness_N_m": self.standing.longitudinal,
             "standing_lateral_stiffness_N_m": self.standing.lateral,
             "standing_strain_amplitude": AMPLITUDE,

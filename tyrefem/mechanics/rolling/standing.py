@@ -80,6 +80,16 @@ def push_forces(body: ContactBody, states: States) -> Array:
     return forces
 
 
+def as_it_rolls(rolled: RolledTyre) -> StandingStiffness:
+    """Stiffness of the contact of a rolling tyre with the compliance in which it rolls: moduli of the revolution."""
+    grid, axes = rolled.grid, rolled.axes
+    compliance = grid.compliance(axes)
+    if grid.motions is not None:
+        motions, weights = np.einsum("kax,kxn->kan", axes, grid.motions[0]), grid.motions[1]
+        compliance = compliance + np.einsum("kan,nm,lbm->kalb", motions, weights, motions, optimize=True)
+    return standing_stiffness(ContactBody(compliance, grid.upstream, grid.turns(axes)), rolled.contact.states)
+
+
 @dataclass(frozen=True, eq=False)
 class StandingTyre(Brief):
     """A study's tyre that stands where it rolled, without loss and inertia.
