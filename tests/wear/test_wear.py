@@ -128,6 +128,16 @@ def test_a_worn_section_loads_and_is_thinner_by_the_wear(tmp_path: Path) -> None
 
 
 @pytest.mark.fast
+@pytest.mark.fast
+def test_a_worn_section_loses_the_volume_of_its_rings() -> None:
+    """Means over 10 mm alone change it by 1 % where wear grows towards the edges."""
+    even = rings()
+    edges = replace(even, power=even.power * np.linspace(-2.0, 2.0, len(even.power)) ** 4)
+    profile = WornProfile.of(load(STUDY), edges)
+    s = load(STUDY).locate(edges.places.T)[0]
+    assert profile(s) @ edges.areas == pytest.approx(edges.volume_per_km, rel=1e-9)
+
+
 def test_a_tread_that_is_worn_through_is_refused() -> None:
     study, wear = tf.study(STUDY), rings()
     with pytest.raises(InputError, match=r"worn through .* km leave 0\.5 mm") as caught:
