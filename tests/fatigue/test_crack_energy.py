@@ -58,6 +58,19 @@ def test_uniaxial_energy_on_an_oblique_plane() -> None:
     np.testing.assert_allclose(energies.on(products(normals)).peak[0], expected, rtol=1e-4)
 
 
+def test_a_narrow_hill_beside_a_broad_one_is_found() -> None:
+    """Growth that falls with R = valley/peak has hills 5 degrees wide: the search took the broad one, with 60 %."""
+    rng = np.random.default_rng(7)
+    narrow, broad = (v / np.linalg.norm(v, axis=-1, keepdims=True) for v in rng.normal(size=(2, 300, 1, 3)))
+
+    def damage(normals: Array) -> Array:
+        near, far = (np.minimum(np.abs((normals * hill).sum(axis=-1)), 1.0) for hill in (narrow, broad))
+        return np.asarray(np.maximum(np.exp(-((np.arccos(near) / np.radians(8.0)) ** 2)), 0.6 * far**2))
+
+    _, largest = critical_planes(damage, len(narrow))
+    assert largest.min() > 0.99
+
+
 def test_uniaxial_compression_leaves_shear_only() -> None:
     # Every plane is closed. n.s.de n - s_nn de_nn = 3/2 s de n_x^2 (1 - n_x^2), greatest at 45 degrees: 3/8 W.
     stretches, stress = uniaxial(0.8)

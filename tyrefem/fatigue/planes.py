@@ -8,12 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-#: Directions of the first search over the half sphere, about 10 degrees apart.
-DIRECTIONS = 200
+#: Directions of the first search over the half sphere, about 7 degrees apart.
+DIRECTIONS = 400
 #: Directions round the best one in a refinement, refinements, and last step, rad.
-AROUND, REFINEMENTS, LAST = 6, 14, np.radians(0.3)
+AROUND, REFINEMENTS, LAST = 8, 14, np.radians(0.3)
+#: First step of a refinement over the distance of the directions: a whole one leaves narrow hills.
+FIRST = 0.5
 #: Directions from which the search is refined, and the least angle between them, rad.
-STARTS, DISTINCT = 3, np.radians(25.0)
+STARTS, DISTINCT = 5, np.radians(10.0)
 
 
 def half_sphere(count: int = DIRECTIONS) -> Array:
@@ -73,7 +75,7 @@ def critical_planes(damage: Callable[[Array], Array], points: int) -> tuple[Arra
 
 
 def _refined(damage: Callable[[Array], Array], normals: Array, points: int) -> tuple[Array, Array]:
-    rows, steps = np.arange(points), np.full(points, np.sqrt(2 * np.pi / DIRECTIONS))
+    rows, steps = np.arange(points), np.full(points, FIRST * np.sqrt(2 * np.pi / DIRECTIONS))
     largest = np.zeros(points)
     for _ in range(REFINEMENTS):
         candidates = around(normals, steps)
