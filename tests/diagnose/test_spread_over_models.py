@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,8 +16,10 @@ from tyrefem.diagnose.fitting.criterion import LogEvidence
 from tyrefem.diagnose.fitting.exhaustive import Exhaustive
 from tyrefem.diagnose.fitting.fits import FittedSet
 from tyrefem.diagnose.fitting.selection import SelectionProblem
+from tyrefem.diagnose.ranking import Ranking, beside_other_models
 from tyrefem.diagnose.settings import DEFAULT
 from tyrefem.diagnose.unknowns.candidates import SetPrior
+from tyrefem.diagnose.verdicts.verdict import CONFOUNDED, IDENTIFIED, PARTLY
 from tyrefem.diagnose.words.result_tables import parameters
 
 T = np.linspace(0.0, 1.0, 40)
@@ -57,6 +61,16 @@ def test_the_spread_is_the_root_mean_square_about_the_fit(fit: FittedSet) -> Non
     assert models.spread(fit) == {unknown: pytest.approx(expected)}
     # An improbable model does not count, and no interval becomes narrower.
     assert beside(fit, (1.0, x, 0.5 * sd), (0.0, x + 9 * sd, sd)).spread(fit) == {unknown: sd}
+
+
+@pytest.mark.parametrize(("verdict", "wider"), [(IDENTIFIED, True), (PARTLY, True), (CONFOUNDED, False)])
+def test_named_effects_have_the_spread_over_the_models(fit: FittedSet, verdict: str, wider: bool) -> None:
+    (unknown,) = fit.members[0].unknowns
+    x, sd = fit.values[unknown], fit.sd[unknown]
+    judged = SimpleNamespace(verdict=verdict)
+    unused: Any = None
+    ranking = Ranking(judged, fit, fit, unused, unused, unused, beside(fit, (1.0, x + sd, sd)))  # type: ignore[arg-type]
+    assert beside_other_models(ranking).best.sd[unknown] == pytest.approx(sd * (math.sqrt(2) if wider else 1.0))
 
 
 def test_tables_state_the_wider_standard_deviation_and_the_value_of_the_fit(fit: FittedSet) -> None:

@@ -297,8 +297,8 @@ def allowed_error(ranking: Ranking, settings: DiagnosisSettings) -> float:
 
 
 def beside_other_models(ranking: Ranking) -> Ranking:
-    """The ranking; identified effects get standard deviations over all discrepancy models, see `Robustness.spread`."""
-    if ranking.judgement.verdict != IDENTIFIED or ranking.robustness is None:
+    """The ranking; named effects get standard deviations over all discrepancy models, see `Robustness.spread`."""
+    if ranking.judgement.verdict not in (IDENTIFIED, PARTLY) or ranking.robustness is None:
         return ranking
     return replace(ranking, best=replace(ranking.best, spread=ranking.robustness.spread(ranking.best)))
 
