@@ -103,6 +103,13 @@ def test_brake_warms_a_fixed_rim_with_its_lag() -> None:
     assert braked.rim_temperature(100.0) == pytest.approx(25 + 30 * (1 - 1 / math.e))
 
 
+def test_a_brake_that_begins_late_warms_the_rim_from_then_on() -> None:
+    late = {"name": "brake-heat", "warmer_by": "30 delta_degC", "lag": "100 s", "begins": "60 s"}
+    braked = tyre([late])
+    assert [braked.rim_temperature(t) for t in (0.0, 60.0)] == [25.0, 25.0]
+    assert braked.rim_temperature(160.0) == pytest.approx(25 + 30 * (1 - 1 / math.e))
+
+
 def test_brake_power_ends_in_the_rim() -> None:
     rim = {"law": "lumped", "mass": "9 kg", "cooling": "0 W/K", "film": "0 W/m**2/K"}
     changes = {"boundaries.rim": rim, "effects": [{"name": "brake-power", "power": "200 W"}]}

@@ -11,7 +11,7 @@ from tyrefem.effects.tyre import StudyOfTyre, Tyre
 
 
 class BrakeHeat(Effect):
-    """T_rim -> T_rim + warmer_by (1 - exp(-t/lag))."""
+    """T_rim -> T_rim + warmer_by (1 - exp(-(t - begins)/lag)),  t > begins."""
 
     name: ClassVar[str] = "brake-heat"
     family: ClassVar[str] = "boundary"
@@ -28,10 +28,15 @@ class BrakeHeat(Effect):
     lag: Annotated[
         float, Prior("s", "time in which it warms", 200.0, 30.0, 3600.0, null=300.0, start=300.0, amplitude=False)
     ] = 300.0
+    begins: Annotated[
+        float, Prior("s", "time at which the brake begins to warm it", 300.0, 0.0, 36000.0, start=0.0, amplitude=False)
+    ] = 0.0
 
     def sink_addend(self, tyre: Tyre, sink: str, t: float) -> float:
         """K added to the rim's temperature."""
-        return self.warmer_by * -math.expm1(-t / self.lag) if sink == "rim" else 0.0
+        if sink != "rim" or t <= self.begins:
+            return 0.0
+        return self.warmer_by * -math.expm1(-(t - self.begins) / self.lag)
 
     @classmethod
     def refusal(cls, study: StudyOfTyre) -> str | None:
