@@ -15,11 +15,11 @@ from numpy.typing import NDArray
 from tyrefem.cli import main
 from tyrefem.diagnose.law.evidence import LawFit
 from tyrefem.diagnose.law.heat_law import Exponent, PlaceLaw
-from tyrefem.diagnose.law.places import FILM, FLUX, HEAT, LOSS, LawPlace
+from tyrefem.diagnose.law.places import FILM, FLUX, HEAT, LOSS, SIDEWALL, LawPlace
 from tyrefem.diagnose.law.terms import LawTerms, Switch
 from tyrefem.diagnose.unknowns.unknown import Unknown
 from tyrefem.diagnose.words.draft_effect import draft_effects
-from tyrefem.diagnose.words.law import limits
+from tyrefem.diagnose.words.law import cause_words, limits
 from tyrefem.effects import catalogue, use_effects
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import study
@@ -222,3 +222,12 @@ def test_a_folder_that_cannot_be_used_is_one_error(
     message = " ".join(capsys.readouterr().err.split())
     assert complaint in message
     assert "Traceback" not in message
+
+
+def test_steady_heat_into_the_sidewall_may_be_the_sun_on_that_side() -> None:
+    side = LawPlace(FLUX, np.nan, SIDEWALL, HEATED, 1.0)
+    (sentence,) = cause_words(side, law({}))
+    assert sentence.startswith("The sun on that side")
+    assert cause_words(side, law({}, amplitude=-2e4)) == cause_words(side, law({}, "begins", 300.0)) == []
+    assert cause_words(side, law({"speed": 1.0})) == []
+    assert cause_words(replace(side, where="whole outer surface"), law({})) == []

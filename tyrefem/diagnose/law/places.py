@@ -27,9 +27,11 @@ LOSS_SD, FILM_SD = 0.2, 0.4
 FILMS = ("road", "outside_air", "tread_air", "contained_air", "rim")
 #: Name of the place of a share of the heat of all regions.
 EVERYWHERE = "all regions"
+#: Name of the place of a flux that is the same on the whole sidewall.
+SIDEWALL = "whole sidewall surface"
 #: A flux that is the same on a whole surface: name of the place -> surface of `missing-flux`.
 WHOLE_SURFACES = {
-    "whole tread surface": "tread", "whole sidewall surface": "sidewall", "whole outer surface": "outer",
+    "whole tread surface": "tread", SIDEWALL: "sidewall", "whole outer surface": "outer",
     "whole inner surface": "inner",
 }  # fmt: skip
 #: Surface of the tyre at which a film, or the flux through a whole surface, acts.

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from tyrefem.diagnose.heat.courses import BEGINS, ENDS, PHASE, RUN
 from tyrefem.diagnose.heat.sources import CLEAR, STATED
-from tyrefem.diagnose.law.places import FILM, FLUX, LOSS, UNITS, WHOLE_SURFACES, LawPlace
+from tyrefem.diagnose.law.places import FILM, FLUX, LOSS, SIDEWALL, UNITS, WHOLE_SURFACES, LawPlace
 from tyrefem.diagnose.law.terms import ABOVE, DEFLECTION, LOAD, NO_SWITCH, PRESSURE, REST, ROLLING, SPEED, WARM
 from tyrefem.diagnose.numbers import amount, chance, percent, time_with_sd, with_sd
 from tyrefem.diagnose.unknowns.heat_patches import SURFACES, place_of
@@ -51,7 +51,21 @@ def law_words(d: DiagnosisData) -> tuple[str, ...]:
     at = [reference_words(law, name) for name in law.fit.terms]
     part = f"It describes {percent(heat.share)} of what heat with a free course in every run describes"
     rest = [part] if heat.share < PART else []
-    return (f"{first}: {size}{' at ' + ', '.join(at) if at else ''}", *rest, *place_words(d, heat), *limits(law))
+    return (
+        f"{first}: {size}{' at ' + ', '.join(at) if at else ''}",
+        *rest,
+        *cause_words(heat.place, law),
+        *place_words(d, heat),
+        *limits(law),
+    )
+
+
+def cause_words(place: LawPlace, law: PlaceLaw) -> list[str]:
+    """A usual cause of heat that flows steadily into the sidewall, which no effect of the catalogue is."""
+    steady = not law.fit.terms and law.fit.switch.kind == NO_SWITCH
+    if not (place.where == SIDEWALL and steady and law.amplitude > 0):
+        return []
+    return ["The sun on that side, or a hot body beside the tyre, would do this; the effect sun heats the tread, too"]
 
 
 def place_words(d: DiagnosisData, heat: HeatLaw) -> list[str]:
