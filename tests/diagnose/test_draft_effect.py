@@ -19,7 +19,7 @@ from tyrefem.diagnose.law.places import FILM, FLUX, HEAT, LOSS, SIDEWALL, LawPla
 from tyrefem.diagnose.law.terms import LawTerms, Switch
 from tyrefem.diagnose.unknowns.unknown import Unknown
 from tyrefem.diagnose.words.draft_effect import draft_effects
-from tyrefem.diagnose.words.law import cause_words, limits
+from tyrefem.diagnose.words.law import cause_words, discrepancy_words, limits
 from tyrefem.effects import catalogue, use_effects
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import study
@@ -231,3 +231,18 @@ def test_steady_heat_into_the_sidewall_may_be_the_sun_on_that_side() -> None:
     assert cause_words(side, law({}, amplitude=-2e4)) == cause_words(side, law({}, "begins", 300.0)) == []
     assert cause_words(side, law({"speed": 1.0})) == []
     assert cause_words(replace(side, where="whole outer surface"), law({})) == []
+
+
+@pytest.mark.parametrize(
+    ("name", "probability", "told"),
+    [("strain energy", 0.999, True), ("strain energy", 0.3, False), ("missing heat", 0.9, False), ("none", 0.9, False)],
+)
+def test_a_law_beside_a_more_probable_description_has_intervals_that_are_too_narrow(
+    name: str, probability: float, told: bool
+) -> None:
+    leading = SimpleNamespace(name=name, probability=probability, words="another strain energy along the meridian")
+    d: Any = SimpleNamespace(robustness=SimpleNamespace(models=[leading]))
+    words = "Another strain energy along the meridian would describe this heat as well (99.9 %); the law's intervals"
+    assert [sentence.startswith(words) for sentence in discrepancy_words(d)] == [True] * told
+    d.robustness = None
+    assert discrepancy_words(d) == []

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from tyrefem.diagnose.beside.discrepancy import HEAT, NONE
 from tyrefem.diagnose.heat.courses import BEGINS, ENDS, PHASE, RUN
 from tyrefem.diagnose.heat.sources import CLEAR, STATED
 from tyrefem.diagnose.law.places import FILM, FLUX, LOSS, SIDEWALL, UNITS, WHOLE_SURFACES, LawPlace
@@ -27,6 +28,8 @@ REFERENCES = {
 }  # fmt: skip
 #: A law that describes less than this is said to.
 PART = 0.995
+#: Another description of the same heat is told from this probability on.
+LIKELY = 0.5
 FILM_NAMES = {
     "road": "film between tread and road", "outside_air": "outside air film",
     "tread_air": "air film of the tread between two contacts", "contained_air": "film of the contained air",
@@ -57,6 +60,7 @@ def law_words(d: DiagnosisData) -> tuple[str, ...]:
         *cause_words(heat.place, law),
         *place_words(d, heat),
         *limits(law),
+        *discrepancy_words(d),
     )
 
 
@@ -111,6 +115,18 @@ def limits(law: PlaceLaw) -> list[str]:
         verb, of = ("vary", "their exponents") if len(law.hardly) > 1 else ("varies", "its exponent")
         sentences.append(f"{_and(law.hardly).capitalize()} hardly {verb}, so nothing is known of {of}")
     return sentences
+
+
+def discrepancy_words(d: DiagnosisData) -> list[str]:
+    """A more probable description of the same readings, which the law's intervals leave out."""
+    leading = d.robustness.models[0] if d.robustness else None
+    if leading is None or leading.name in (NONE, HEAT) or leading.probability < LIKELY:
+        return []
+    words = f"{leading.words[0].upper()}{leading.words[1:]}"
+    return [
+        f"{words} would describe this heat as well ({percent(leading.probability)}); the law's intervals leave that "
+        "out, so they are too narrow"
+    ]
 
 
 def law_formula(law: PlaceLaw) -> str:
