@@ -10,7 +10,8 @@ import pytest
 import tyrefem as tf
 from tyrefem.cli import main
 from tyrefem.errors import InputError
-from tyrefem.inputs.origin import WRITTEN
+from tyrefem.inputs.origin import WRITTEN, StudyOrigin
+from tyrefem.output.file import results_file
 
 QUICK = {"mesh.size": "15 mm", "mesh.element": "P1", "drive.duration": "20 s"}
 #: A file that the user has edited since `tyrefem new` wrote it.
@@ -40,6 +41,24 @@ def test_a_model_does_not_replace_a_study_of_its_name(here: Path, refused: Calla
         assert "tyre.toml: --out: exists and was not made by tyrefem" in error
     assert (here / "tyre.toml").read_text() == EDITED
     assert [path.name for path in here.iterdir()] == ["tyre.toml"]
+
+
+def test_a_study_edited_below_its_first_lines_is_the_users(here: Path) -> None:
+    study = tf.study("nasa-22x5.5-8pr", QUICK)
+    origin = StudyOrigin.beside(study, Path("tyre.npz"))
+    for change in (str, lambda text: text.replace("\n", "\r\n"), lambda text: text + "# mine\n"):
+        (here / "tyre.toml").unlink(missing_ok=True)
+        origin.write(here)
+        text = change((here / "tyre.toml").read_text())
+        (here / "tyre.toml").write_text(text, newline="")
+        assert origin.wrote(here / "tyre.toml") == (change is str)
+    with (
+        pytest.raises(InputError, match=r"tyre\.toml: .*or has changed since"),
+        results_file("tyre.npz", (".npz",), origin=origin),
+    ):
+        pass
+    assert (here / "tyre.toml").read_text() == text
+    assert tf.study("tyre.toml").card == study.card
 
 
 def test_a_result_from_python_does_not_replace_another_study(here: Path) -> None:

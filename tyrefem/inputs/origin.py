@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -18,8 +19,9 @@ if TYPE_CHECKING:
 
 #: The study of a folder of results, with all changes: `tyrefem.load` of the folder reads it.
 STUDY = "study.toml"
-#: First line of a study that a command writes; with it the command may write the file again.
+#: First line of a study that is written beside results, and the start of the second.
 WRITTEN = "# Written by tyrefem: the study that made the results beside this file."
+CHECKSUM = "# Checksum of the lines below, so that an edited study is kept: "
 
 
 @dataclass(frozen=True)
@@ -55,9 +57,11 @@ class StudyOrigin:
         return () if read is not None and target.resolve() == read.resolve() else (self.file,)
 
     def wrote(self, file: Path) -> bool:
-        """Whether a command has written this file of a study, not the user: by its first line."""
-        with suppress(OSError), file.open("rb") as stream:
-            return stream.readline().decode(errors="replace").strip() == WRITTEN
+        """Whether this file of a study is as a command has written it: by the checksum in its second line."""
+        with suppress(OSError, UnicodeDecodeError):
+            with file.open(encoding="utf-8", newline="") as stream:
+                first, second, text = stream.readline(), stream.readline(), stream.read()
+            return first + second == _head(text)
         return False
 
     def check(self, folder: Path) -> None:
@@ -77,7 +81,7 @@ class StudyOrigin:
         self.check(folder)
         names = self.names(folder)
         for name in names:
-            write_study(self.study.data, self.study.folder, folder / name, comment=WRITTEN)
+            write_study(self.study.data, self.study.folder, folder / name, head=_head)
         return names
 
     def summary(self) -> dict[str, Any]:
@@ -94,6 +98,11 @@ class StudyOrigin:
             "random_seed": self.random_seed,
             "input": dict(study.data),
         }
+
+
+def _head(text: str) -> str:
+    """The first lines of a study's file, for the text below them."""
+    return f"{WRITTEN}\n{CHECKSUM}{hashlib.blake2b(text.encode(), digest_size=8).hexdigest()}\n"
 
 
 def mesh_summary(study: StudyData) -> dict[str, Any]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -11,8 +11,10 @@ from tyrefem import library
 from tyrefem.quantity import written
 
 
-def write_study(data: Mapping[str, Any], folder: Path | None, path: Path, *, comment: str = "") -> Path:
-    """Write a study's data as TOML, after a line with a ``comment``; return the path.
+def write_study(
+    data: Mapping[str, Any], folder: Path | None, path: Path, *, head: Callable[[str], str] | None = None
+) -> Path:
+    """Write a study's data as TOML, after the lines that ``head`` gives for this text; return the path.
 
     Paths relative to ``folder`` become absolute if ``path`` is in another folder.
     """
@@ -22,7 +24,8 @@ def write_study(data: Mapping[str, Any], folder: Path | None, path: Path, *, com
 
     content = dict(data) if path.parent.resolve() == folder else _portable(data, folder)
     with atomic_path(path) as temporary:
-        temporary.write_text(f"{comment}\n" * bool(comment) + tomli_w.dumps(written(content)), encoding="utf-8")
+        text = tomli_w.dumps(written(content))
+        temporary.write_text((head(text) if head else "") + text, encoding="utf-8", newline="\n")
     return path
 
 

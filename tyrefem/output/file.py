@@ -75,7 +75,8 @@ class _FileGuard(WriteGuard):
             raise InputError("is a link to nothing: mend or remove it", file=path, field="--out")
         self.before_writing(path)
         if path.exists() and not force and not ours(path):
-            raise InputError("exists and was not made by tyrefem; replace it with --force", file=path, field="--out")
+            message = "exists and was not made by tyrefem, or has changed since; replace it with --force"
+            raise InputError(message, file=path, field="--out")
 
     def before_writing(self, path: Path) -> None:
         """Raise an error for an input."""

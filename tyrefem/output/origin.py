@@ -14,7 +14,7 @@ class ResultsOrigin(Protocol):
         """The files that `write` writes into a folder."""
 
     def wrote(self, file: Path) -> bool:
-        """Whether `write` has written this file, not the user."""
+        """Whether this file is as `write` has written it."""
 
     def write(self, folder: Path) -> Sequence[str]:
         """Write these files; return their names."""
