@@ -61,6 +61,15 @@ def test_a_study_edited_below_its_first_lines_is_the_users(here: Path) -> None:
     assert tf.study("tyre.toml").card == study.card
 
 
+def test_a_new_tyre_is_written_whole_or_not_at_all(here: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    study = here / "studies" / "passenger-225-45r17" / "study.toml"
+    study.parent.mkdir(parents=True)
+    study.symlink_to("nothing")
+    assert main(["new", "tyre", "225/45R17", "--force"]) == 2
+    assert "study.toml: --out: is a link to nothing" in capfd.readouterr().err
+    assert not list(here.rglob("geometry/*"))
+
+
 def test_a_result_from_python_does_not_replace_another_study(here: Path) -> None:
     result = tf.study("nasa-22x5.5-8pr", QUICK).run()
     (here / "study.toml").write_text(EDITED)

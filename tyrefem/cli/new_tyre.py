@@ -6,6 +6,7 @@ import os
 import shlex
 import tempfile
 from collections.abc import Mapping
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
@@ -57,9 +58,13 @@ def new_tyre(size: str, source: str | None, numbers: Mapping[str, Any], out: Pat
     warnings = _checked(tyre.name, tyre.section, tyre.study)
     for target in files:
         place_of_output(target.parent)
-    with interruption_delayed():
-        for target, (card, text) in files.items():
-            with results_file(target, (".toml",), force=force), atomic_path(target) as temporary:
+    with interruption_delayed(), ExitStack() as checked:
+        for target in files:
+            checked.enter_context(results_file(target, (".toml",), force=force))
+        # Both files or none: they are moved to their places at the end.
+        with ExitStack() as written:
+            for target, (card, text) in files.items():
+                temporary = written.enter_context(atomic_path(target))
                 temporary.write_text(schema_line(card, target) + text, encoding="utf-8")
     for warning in warnings:
         notify(f"warning: {warning}")
