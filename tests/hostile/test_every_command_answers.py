@@ -109,7 +109,7 @@ def test_the_study_of_a_folder_has_the_changes_and_stays_the_user_s(here: Path) 
     told = json.loads((here / "summary.json").read_text(encoding="utf-8"))
     assert "study.toml" not in told["files"]
     assert told["input"]["drive"]["pressure"] == "60 psi"
-    tf.study("study.toml").run().save(here)
+    tf.study("study.toml").run().save(here, force=True)
     assert main(["run", "study.toml", "--no-pictures", "--no-vtk", "-q", "--out", ".", "--force"]) == 0
     assert main([*sweep, "--out", ".", "--force"]) == 0
     assert (here / "study.toml").read_bytes() == own

@@ -355,7 +355,10 @@ def test_a_comparison_comes_back_from_its_folder(tmp_path: Path) -> None:
     for name, curve in comparison.curves.items():
         pd.testing.assert_frame_equal(back.curves[name], curve)
     back.save(tmp_path / "second")
-    for file in (tmp_path / "first").iterdir():
+    files = {file.name: file for file in (tmp_path / "first").iterdir()}
+    assert {"study.toml", "summary.json"} < files.keys()
+    files.pop("summary.json")  # it names the folder that the study was read from
+    for file in files.values():
         assert (tmp_path / "second" / file.name).read_bytes() == file.read_bytes(), file.name
     (tmp_path / "first" / "residuals.csv").write_text("run\nslow\n")
     (tmp_path / "first" / "comparison.json").write_text("{}")

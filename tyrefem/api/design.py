@@ -18,18 +18,22 @@ class Design(design.DesignData):
 
         return shown(lambda: design_page(self))
 
-    def save(self, folder: str | Path, *, pictures: bool = True) -> Path:
-        """Write every table (CSV and Parquet), ``summary.json``, and with pictures the PNG files and ``sweep.html``.
+    def save(self, folder: str | Path, *, pictures: bool = True, force: bool = False) -> Path:
+        """Write the files of `tyrefem sweep`: every table (CSV and Parquet), ``study.toml``, ``summary.json``, and with
+        pictures the PNG files and ``sweep.html``; return the folder.
 
-        Returns the folder.
+        ``force``: replace the user's files and the results of other commands.
 
         Raises
         ------
-        InputError : the folder cannot be written.
+        InputError : the folder cannot be written; files in it are not of this command.
         """
-        from tyrefem.reports.sweep_files import save
+        from tyrefem.api.saving import saving
+        from tyrefem.inputs.origin import StudyOrigin
+        from tyrefem.reports.sweep_files import save, saved_names
 
-        save(self, Path(folder), pictures=pictures)
+        with saving(folder, "sweep", saved_names(), StudyOrigin(self.study), force=force) as place:
+            save(self, place, pictures=pictures)
         return Path(folder)
 
     def run(self, variant: str | int) -> Result:

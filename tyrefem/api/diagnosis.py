@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 from tyrefem.api.verbs import shown, with_verbs
 from tyrefem.diagnose import diagnosis
+from tyrefem.inputs.study import StudyData
 from tyrefem.plan import steps as test_plan
 
 
@@ -58,20 +60,31 @@ class Diagnosis(diagnosis.DiagnosisData):
 
         return record(self)
 
-    def save(self, folder: str | Path) -> Path:
-        """Write verdict.json, amended.toml, tables, pictures and one self-contained page; return the page's path.
+    def save(self, folder: str | Path, *, force: bool = False) -> Path:
+        """Write the files of `tyrefem diagnose`: verdict.json, amended.toml, study.toml, summary.json, tables,
+        pictures and one self-contained page, whose path it returns.
+
+        ``force``: replace the user's files and the results of other commands.
 
         Raises
         ------
-        InputError : the folder cannot be written.
+        InputError : the folder cannot be written; files in it are not of this command.
         """
-        from tyrefem.reports.diagnosis import save
+        from tyrefem.api.saving import saving
+        from tyrefem.inputs.origin import StudyOrigin
+        from tyrefem.reports.diagnosis import FILES, save
 
-        return save(self, folder)
+        candidates = [candidate.name for candidate in self.candidates]
+        origin = StudyOrigin(self.original, simulated=True).using(candidates)
+        with saving(folder, "diagnose", FILES, origin, force=force) as place:
+            return save(self, place)
 
 
+@dataclass(frozen=True, eq=False, repr=False)
 class ExperimentPlan(test_plan.PlanData):
-    """A plan of the next runs and sensors, with `words` and `save`."""
+    """A plan of the next runs and sensors for a study, ``original``, with `words` and `save`."""
+
+    original: StudyData = field(kw_only=True)
 
     @cached_property
     def words(self) -> tuple[str, ...]:
@@ -86,13 +99,21 @@ class ExperimentPlan(test_plan.PlanData):
 
         return record(self)
 
-    def save(self, folder: str | Path) -> Path:
-        """Write plan.csv, plan-candidates.csv, plan.json, plan.png and plan.html; return the page's path.
+    def save(self, folder: str | Path, *, force: bool = False) -> Path:
+        """Write the files of `tyrefem plan`: plan.csv, plan-candidates.csv, plan.json, plan.png, study.toml,
+        summary.json and plan.html, whose path it returns.
+
+        ``force``: replace the user's files and the results of other commands.
 
         Raises
         ------
-        InputError : the folder cannot be written.
+        InputError : the folder cannot be written; files in it are not of this command.
         """
-        from tyrefem.reports.plan import save
+        from tyrefem.api.saving import saving
+        from tyrefem.inputs.origin import StudyOrigin
+        from tyrefem.plan.information import SEED
+        from tyrefem.reports.plan import FILES, save
 
-        return save(self, folder)
+        origin = StudyOrigin(self.original, simulated=True, random_seed=SEED).using(self.to_dict()["plugins"])
+        with saving(folder, "plan", FILES, origin, force=force) as place:
+            return save(self, place)

@@ -15,13 +15,18 @@ class Exploration(box_model.BoxModel):
 
         return framed(page(self))
 
-    def save(self, path: str | Path) -> Path:
-        """Write the page of `tyrefem explore`: one HTML file that needs no network.
+    def save(self, path: str | Path, *, force: bool = False) -> Path:
+        """Write the page of `tyrefem explore`: one HTML file that needs no network, and beside it the study.
+
+        ``force``: replace files that this tool did not make, or that have changed since.
 
         Raises
         ------
-        InputError : the file cannot be written.
+        InputError : the file cannot be written, or is not of this tool.
         """
+        from tyrefem.api.saving import saving_file
+        from tyrefem.inputs.origin import StudyOrigin
         from tyrefem.reports.explore import write_page
 
-        return write_page(self, path)
+        with saving_file(path, (".html",), StudyOrigin.beside(self.study, Path(path)), force=force) as place:
+            return write_page(self, place)

@@ -32,16 +32,21 @@ class Identification(identification.IdentificationData):
 
         return summary(self)
 
-    def save(self, folder: str | Path, base: str | None = None) -> Path:
-        """Write JSON, tables, pictures, ``report.html`` and, with a base card, material cards.
+    def save(self, folder: str | Path, base: str | None = None, *, force: bool = False) -> Path:
+        """Write the files of `tyrefem rig identify`: JSON, tables, pictures, ``report.html`` and, with a base card,
+        material cards.
+
+        ``force``: replace the user's files and the results of other commands.
 
         Raises
         ------
-        InputError : the folder cannot be written, or the base card does not exist.
+        InputError : the folder cannot be written; files in it are not of this command; no such base card.
         """
-        from tyrefem.reports.rig import save
+        from tyrefem.api.saving import saving
+        from tyrefem.reports.rig import FILES, save
 
-        return save(self, folder, base)
+        with saving(folder, "rig identify", FILES, None, force=force) as place:
+            return save(self, place, base)
 
 
 def identify(

@@ -58,8 +58,9 @@ class Life(lives.LifeData):
         InputError : the folder cannot be written; files in it are not of this command.
         """
         from tyrefem.api.saving import saving
+        from tyrefem.inputs.origin import StudyOrigin
         from tyrefem.reports.life import FILES, write_files
 
-        with saving(folder, "life", FILES, self.study, force=force) as place:
+        with saving(folder, "life", FILES, StudyOrigin(self.study), force=force) as place:
             write_files(self, place, self.shifts if sensitivity else (), pictures=pictures, vtk=vtk)
         return Path(folder)

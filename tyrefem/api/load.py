@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,6 +11,7 @@ from tyrefem.api.result import Result
 from tyrefem.api.studies import Study
 from tyrefem.api.verbs import with_verbs
 from tyrefem.errors import InputError, nearest
+from tyrefem.inputs.origin import STUDY
 from tyrefem.output import SUMMARY
 from tyrefem.output.folder import COMMAND, COMPLETE
 
@@ -59,7 +61,7 @@ def load(folder: str | Path) -> Result | Comparison | DiagnosisRecord | Record:
         from tyrefem.compare.stored import read_comparison
 
         with naming_plugins(place):
-            return with_verbs(Comparison, read_comparison(place))
+            return with_verbs(Comparison, read_comparison(place), original=_study(place))
     if (place / "verdict.json").is_file():
         from tyrefem.api.diagnosis_record import DiagnosisRecord
 
@@ -83,6 +85,13 @@ def load(folder: str | Path) -> Result | Comparison | DiagnosisRecord | Record:
     if not isinstance(command, str):
         raise InputError(f"is no folder of results: its {SUMMARY} names no command of tyrefem", file=place)
     return Record(place, command, bool(summary.get(COMPLETE, True)))
+
+
+def _study(place: Path) -> Study | None:
+    """The study of a folder of results; None: it has none, or its cards have gone."""
+    with suppress(InputError):
+        return Study.load(place / STUDY) if (place / STUDY).is_file() else None
+    return None
 
 
 def _near(place: Path) -> str:

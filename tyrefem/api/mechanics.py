@@ -43,11 +43,12 @@ class LoadedTyre(presses.Pressed):
         InputError : a place is not in the section; the folder cannot be written; files in it are not of this command.
         """
         from tyrefem.api.saving import saving
+        from tyrefem.inputs.origin import StudyOrigin
         from tyrefem.reports.press import FILES, write_files
         from tyrefem.reports.press_places import cycle_places
 
         places = cycle_places(self, at)
-        with saving(folder, "press", FILES, self.study, force=force) as place:
+        with saving(folder, "press", FILES, StudyOrigin(self.study), force=force) as place:
             write_files(self, place, places, self.curve(), pictures=pictures, vtk=vtk)
         return Path(folder)
 
@@ -59,9 +60,10 @@ class NaturalModes(vibrations.NaturalFrequencies):
         """Write the files of `tyrefem modes`: ``modes.csv``, ``modes.json``, with pictures ``modes.png``; as
         `LoadedTyre.save`."""
         from tyrefem.api.saving import saving
+        from tyrefem.inputs.origin import StudyOrigin
         from tyrefem.reports.modes import FILES, write_files
 
-        with saving(folder, "modes", FILES, self.study, force=force) as place:
+        with saving(folder, "modes", FILES, StudyOrigin(self.study), force=force) as place:
             write_files(self, place, pictures=pictures)
         return Path(folder)
 
@@ -92,9 +94,10 @@ class RollingWheel(rolls.RolledStudy):
         """Write the files of `tyrefem roll`: ``roll.json``, ``contact.csv``, ``rings.csv``, ``footprint-pressure.csv``,
         pictures, ``contact.vtu``, ``tyre.vtu``; as `LoadedTyre.save`."""
         from tyrefem.api.saving import saving
+        from tyrefem.inputs.origin import StudyOrigin
         from tyrefem.reports.roll import FILES, write_files
 
-        with saving(folder, "roll", FILES, self.study, force=force) as place:
+        with saving(folder, "roll", FILES, StudyOrigin(self.study), force=force) as place:
             write_files(self, place, pictures=pictures, vtk=vtk)
         return Path(folder)
 
@@ -120,9 +123,10 @@ class ForcesOverSlip(slip_curves.SlipCurve):
         """Write the files of `tyrefem roll` of several slips: ``roll.json``, ``curve.csv``, with pictures
         ``curve.png``; as `LoadedTyre.save`."""
         from tyrefem.api.saving import saving
+        from tyrefem.inputs.origin import StudyOrigin
         from tyrefem.reports.roll import FILES, write_curve
 
-        with saving(folder, "roll", FILES, self.study, force=force) as place:
+        with saving(folder, "roll", FILES, StudyOrigin(self.study), force=force) as place:
             write_curve(self, place, pictures=pictures)
         return Path(folder)
 
@@ -134,8 +138,9 @@ class ForceTable(force_tables.TyreForces):
         """Write the files of `tyrefem forces`: ``forces.csv``, ``forces.json``, ``tyre.tir``, with pictures
         ``forces.png``; as `LoadedTyre.save`."""
         from tyrefem.api.saving import saving
+        from tyrefem.inputs.origin import StudyOrigin
         from tyrefem.reports.forces import FILES, write_files
 
-        with saving(folder, "forces", FILES, self.study, force=force) as place:
+        with saving(folder, "forces", FILES, StudyOrigin(self.study), force=force) as place:
             write_files(self, place, pictures=pictures)
         return Path(folder)

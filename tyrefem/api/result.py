@@ -109,15 +109,23 @@ class Result(result.ResultData):
 
         return write_report(self, Path(path))
 
-    def save(self, folder: str | Path, *, parquet: bool = False) -> Path:
+    def save(self, folder: str | Path, *, parquet: bool = False, force: bool = False) -> Path:
         """Write readings, extremes and heat budget as CSV, ``study.toml``, ``result.npz`` for `tyrefem.load`, and
         ``summary.json``, whose path it returns.
 
-        ``parquet``: the tables also as Parquet, with their units in the columns' metadata.
-        """
-        from tyrefem.reports.run_files import write_tables
+        ``parquet``: the tables also as Parquet, with their units in the columns' metadata. ``force``: replace the
+        user's files and the results of other commands.
 
-        return write_tables(self, Path(folder), parquet=parquet)
+        Raises
+        ------
+        InputError : the folder cannot be written; files in it are not of `tyrefem run`.
+        """
+        from tyrefem.api.saving import saving
+        from tyrefem.inputs.origin import StudyOrigin
+        from tyrefem.reports.run_files import table_files, write_tables
+
+        with saving(folder, "run", table_files(), StudyOrigin(self.study), force=force) as place:
+            return write_tables(self, place, parquet=parquet)
 
 
 class Campaign(campaign.CampaignData):

@@ -72,7 +72,7 @@ class StudyQuestions(studies.StudyData):
             self, table, result, inputs=inputs, ignore=ignore, rename=rename, k=k, executor=executor, progress=progress,
             reduced=reduced, store=store, begin=begin, **options,
         )  # fmt: skip
-        return with_verbs(Comparison, data)
+        return with_verbs(Comparison, data, original=self)
 
     def diagnose(
         self,
@@ -164,7 +164,7 @@ class StudyQuestions(studies.StudyData):
         data = plan(
             self, after, workers=workers, progress=progress, store=store, settings=settings, known=known, **options
         )
-        return with_verbs(ExperimentPlan, data)
+        return with_verbs(ExperimentPlan, data, original=self)
 
     def sweep(
         self,

@@ -59,10 +59,11 @@ def _save(
     force: bool,
 ) -> Path:
     from tyrefem.api.saving import saving
+    from tyrefem.inputs.origin import StudyOrigin
     from tyrefem.reports.wear import FILES, write_files
     from tyrefem.wear.worn_section import worn_section
 
     worn = None if distance is None else worn_section(study, wear, distance / 1e3)
-    with saving(folder, "wear", FILES, study, force=force) as place:
+    with saving(folder, "wear", FILES, StudyOrigin(study), force=force) as place:
         write_files(study, rolled, wear, place, worn, pictures=pictures)
     return folder

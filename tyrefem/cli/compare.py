@@ -59,7 +59,7 @@ def compare(
     from tyrefem.api import study as load
     from tyrefem.compare.validation import NEEDS
     from tyrefem.inputs.origin import StudyOrigin
-    from tyrefem.reports.comparison import FILES
+    from tyrefem.reports.comparison import FILES, save
     from tyrefem.variants.answer_store import PROGRESS, AnswerStore
 
     loaded = load(study, settings(changes), case)
@@ -88,7 +88,7 @@ def compare(
                 store=store,
                 begin=notify,
             )
-            comparison.save(folder)
+            save(comparison, folder)
         store.clear()
     answer_with(comparison.to_dict())
     say(_lines(comparison.table))

@@ -57,7 +57,7 @@ def plan(
     from tyrefem.inputs.origin import StudyOrigin
     from tyrefem.plan.information import SEED
     from tyrefem.plan.workflow import NEEDS
-    from tyrefem.reports.plan import FILES
+    from tyrefem.reports.plan import FILES, save
     from tyrefem.variants.answer_store import PROGRESS
 
     loaded = load(study, settings(changes), case)
@@ -84,7 +84,7 @@ def plan(
             )
             tick("drawing", 0, 0)
             write_json(origin.using(result.to_dict()["plugins"]).summary(), folder / SUMMARY)
-            page = result.save(folder)
+            page = save(result, folder)
         store.clear()
     answer_with(result.to_dict())
     for line in result.words:

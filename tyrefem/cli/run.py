@@ -74,6 +74,7 @@ def _usual_place(study: Study) -> Path:
 
 
 def _single(study: Study, folder: Path, pictures: bool, vtk: bool, revolved: bool, parquet: bool) -> None:
+    from tyrefem.reports.run_files import write_tables
     from tyrefem.simulation.estimate import RunEstimate
 
     warned = warn(study.warnings)
@@ -84,7 +85,7 @@ def _single(study: Study, folder: Path, pictures: bool, vtk: bool, revolved: boo
     tables = f"the tables up to {reached}" if reached else "the tables"
     with keeping(f"{tables} are in {folder}, pictures and VTK files are not complete"):
         with interruption_delayed():
-            result.save(folder, parquet=parquet)
+            write_tables(result, folder, parquet=parquet)
         with stages() as tick:
             if vtk:
                 tick(f"{study.name}: VTK", 0, 0)

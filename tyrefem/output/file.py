@@ -28,6 +28,7 @@ def results_file(
     also: Iterable[str | Path] = (),
     origin: ResultsOrigin | None = None,
     force: bool = False,
+    renews: bool = False,
 ) -> Iterator[Path]:
     """The file that a command writes, checked before any computing.
 
@@ -36,6 +37,7 @@ def results_file(
     suffixes : allowed ones, e.g. ``(".png", ".pdf")``. also : further files that the command writes.
     origin : the study that makes the file: it is written beside the finished file.
     force : replace a file that was not made by this tool.
+    renews : also replace files that have been read: Python has their data in memory.
 
     Raises
     ------
@@ -47,7 +49,7 @@ def results_file(
         raise InputError("is a folder; a file is wanted", file=path, field="--out")
     if path.suffix.lower() not in suffixes:
         raise InputError(f"'{path}' must end with {' or '.join(suffixes)}", field="--out")
-    guard = _FileGuard()
+    guard = _FileGuard(renews=renews)
     beside = () if origin is None else origin.names(path.parent)
     for file in (path, *map(Path, also)):
         guard.check(Path(os.path.abspath(file)), made_by_this_tool, force=force)
@@ -61,7 +63,10 @@ def results_file(
 
 
 class _FileGuard(WriteGuard):
-    """Refuses to overwrite files that this command has read."""
+    """Refuses to overwrite files that this command has read, but unless it ``renews`` them."""
+
+    def __init__(self, *, renews: bool) -> None:
+        self._renews = renews
 
     def check(self, path: Path, ours: Callable[[Path], bool], *, force: bool) -> None:
         """Raise an error if a file cannot be written, or is there and not ``ours``."""
@@ -80,7 +85,7 @@ class _FileGuard(WriteGuard):
 
     def before_writing(self, path: Path) -> None:
         """Raise an error for an input."""
-        for file in inputs_read():
+        for file in () if self._renews else inputs_read():
             with suppress(OSError):
                 if os.path.samefile(path, file):
                     raise InputError("is an input of this command and would be overwritten", file=path, field="--out")

@@ -59,6 +59,7 @@ def results_folder(
     inputs: Iterable[str | Path] = (),
     force: bool = False,
     keeps: Sequence[str] = (),
+    renews: bool = False,
 ) -> Iterator[Path]:
     """Open a folder for the results of one command, with all checks before any computing.
 
@@ -72,6 +73,7 @@ def results_folder(
     inputs : files that the command reads, besides those already read.
     force : replace foreign files of these names, and another command's results.
     keeps : names of files with finished work for a later attempt: the folder is marked at once, and they stay.
+    renews : also replace files that have been read: Python has their data in memory.
 
     Raises
     ------
@@ -83,7 +85,7 @@ def results_folder(
     try:
         with _locked(place):
             files = tuple(map(Path, inputs))
-            guard = ResultsFolder(place, command, names, files, force=force, keeps=keeps, origin=origin)
+            guard = ResultsFolder(place, command, names, files, origin=origin, force=force, keeps=keeps, renews=renews)
             guard.check()
             try:
                 with guarded(guard):
@@ -145,9 +147,10 @@ class ResultsFolder(WriteGuard):
         names: Sequence[str],
         inputs: Sequence[Path],
         *,
+        origin: ResultsOrigin | None,
         force: bool,
         keeps: Sequence[str],
-        origin: ResultsOrigin | None,
+        renews: bool,
     ) -> None:
         self.folder = folder
         self.command = command
@@ -155,6 +158,7 @@ class ResultsFolder(WriteGuard):
         self._origin = origin
         self.force = force
         self._keeps = tuple(keeps)
+        self._renews = renews
         self._inputs = tuple(inputs)
         self._earlier_summary_text = self._summary_text()
         self._earlier = _summary_content(self._earlier_summary_text)
@@ -342,7 +346,7 @@ class ResultsFolder(WriteGuard):
         return False
 
     def _refuse_input(self, path: Path) -> None:
-        if self._is_input(path):
+        if not self._renews and self._is_input(path):
             raise InputError("is an input of this command and would be overwritten; choose another --out", file=path)
 
     def _remove(self, path: Path) -> None:

@@ -136,14 +136,19 @@ def _hottest_region(result: ResultData) -> str:
     return max(peaks, key=lambda region: peaks[region].temperature)
 
 
+def table_files() -> list[str]:
+    """The files that `write_tables` may write, besides the study's."""
+    from tyrefem.simulation.stored_result import FILE
+
+    return [*TABLES, *(name.replace(".csv", ".parquet") for name in TABLES), FILE]
+
+
 def run_files(study: StudyData, folder: Path) -> list[str]:
     """The files that a run of ``study`` may write, relative to its folder."""
     from tyrefem.reports.figures import PICTURES
     from tyrefem.reports.vtk import file_names
-    from tyrefem.simulation.stored_result import FILE
 
-    columns = [name.replace(".csv", ".parquet") for name in TABLES]
-    whole = [*TABLES, *columns, FILE, *StudyOrigin(study).names(folder), "report.html"]
+    whole = [*table_files(), *StudyOrigin(study).names(folder), "report.html"]
     return [*whole, *(f"pictures/{name}" for name in PICTURES),
             *(f"vtk/{name}" for name in file_names(study.name))]  # fmt: skip
 
@@ -156,8 +161,6 @@ def write_tables(result: ResultData, folder: Path, *, parquet: bool = False) -> 
     """
     from tyrefem.simulation.stored_result import FILE, write_result
 
-    origin = StudyOrigin(result.study)
-    origin.check(folder)
     if parquet:
         import pandas as pd
 
@@ -183,5 +186,5 @@ def write_tables(result: ResultData, folder: Path, *, parquet: bool = False) -> 
                 whole = result.readings.assign(**{"contained-air_pressure_Pa": result.gas_pressure})
             write_parquet(whole, (folder / name).with_suffix(".parquet"))
     write_result(result, folder / FILE)
-    origin.write(folder)
+    StudyOrigin(result.study).write(folder)
     return write_json(summary(result), folder / "summary.json")

@@ -9,7 +9,6 @@ import base64
 import json
 import re
 from collections.abc import Collection, Mapping, Sequence
-from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -245,8 +244,10 @@ def earlier(folder: Path) -> dict[str, Any]:
     return data if isinstance(data, dict) and isinstance(data.get(FILES), list) else {}
 
 
-def clear(folder: Path, before: Mapping[str, Any], summary: Mapping[str, Any], written: Sequence[str]) -> list[str]:
-    """Remove files that ``before`` lists and that are out of date; return the names of the sweep's files that stay.
+def still_valid(
+    folder: Path, before: Mapping[str, Any], summary: Mapping[str, Any], written: Sequence[str]
+) -> list[str]:
+    """The files of an earlier sweep, of the summary ``before``, that are not out of date.
 
     For the same question, all files stay until it is finished. Page and pictures stay if they are not drawn again
     and no result has changed.
@@ -255,19 +256,11 @@ def clear(folder: Path, before: Mapping[str, Any], summary: Mapping[str, Any], w
     left = [name for name in listed if name not in written and (folder / name).is_file()]
     now = json.loads(json.dumps(jsonable(summary)))
     same = all(before.get(key) == now[key] for key in QUESTION)
-    kept = [
+    return [
         name
         for name in left
         if same and (not now["complete"] or (name.endswith((".png", ".html")) and _results(before) == _results(now)))
     ]
-    for name in left:
-        if name not in kept:
-            # A file that cannot be removed, or a folder that is not empty, stays.
-            with suppress(OSError):
-                (folder / name).unlink()
-                if "/" in name:
-                    (folder / name).parent.rmdir()
-    return [*written, *kept]
 
 
 def _results(summary: Mapping[str, Any]) -> dict[str, Any]:

@@ -13,7 +13,7 @@ from tyrefem.inputs.origin import StudyOrigin
 from tyrefem.output import atomic_path, write_json
 from tyrefem.reports.parquet import with_units, write_parquet
 from tyrefem.reports.sweep import FILES as LIST
-from tyrefem.reports.sweep import clear, earlier, write_page
+from tyrefem.reports.sweep import earlier, still_valid, write_page
 from tyrefem.reports.sweep_variants import FOLDER as VARIANT_FILES
 from tyrefem.sweep.question import sweep_questions
 from tyrefem.sweep.responses import Responses
@@ -34,6 +34,11 @@ def part_names() -> tuple[str, ...]:
 
 
 def file_names() -> tuple[str, ...]:
+    """The files that a sweep may write into a folder, besides the study's: those of `save`, VTK files of variants."""
+    return (*saved_names(), *(f"{VARIANT_FILES}/*/*.{kind}" for kind in ("pvd", "vtu", "py")))
+
+
+def saved_names() -> tuple[str, ...]:
     """The files that `save` may write into a folder, besides the study's."""
     pictures = ("map-*.png", "curves-*.png", "bars-*.png", "pareto*.png", "indices-*.png", "optimum.png",
                 *(f"{key}*.png" for key in sweep_questions()))  # fmt: skip
@@ -42,7 +47,6 @@ def file_names() -> tuple[str, ...]:
         "errors.csv",
         PAGE,
         *(f"pictures/{name}" for name in pictures),
-        *(f"{VARIANT_FILES}/*/*.{kind}" for kind in ("pvd", "vtu", "py")),
     )
 
 
@@ -55,10 +59,8 @@ def save(design: DesignData, folder: Path, *, pictures: bool = True) -> dict[str
     """Write ``NAME.csv`` and ``.parquet`` of every part, the study, ``summary.json`` and the page; return the summary.
 
     With a reduced model, also ``errors.csv``: the largest error of every answer in fresh full runs.
-    Files of an earlier question are removed; its summary lists them.
+    Its ``files`` are those that stay in the folder; `results_folder` removes the others of an earlier question.
     """
-    origin = StudyOrigin(design.study)
-    origin.check(folder)
     before, written = earlier(folder), []
     for part in design.parts:
         if isinstance(part, Responses) and len(part.swept.outcomes) > ROWS_AT_ONCE:
@@ -67,11 +69,12 @@ def save(design: DesignData, folder: Path, *, pictures: bool = True) -> dict[str
             written += write_table(part.table, folder, part.name)
     if design.swept is not None and design.swept.certificate is not None:
         written += write_errors(design.swept, folder)
-    written += origin.write(folder)
+    written += StudyOrigin(design.study).write(folder)
     summary = summarised(design)
     if pictures:
         written += write_page(design, summary, folder)
-    summary[LIST] = clear(folder, before, summary, written)
+    variants = [name for name in kept_names() if (folder / name).is_file()]
+    summary[LIST] = [*written, *variants, *still_valid(folder, before, summary, written)]
     write_json(summary, folder / "summary.json")
     return summary
 
