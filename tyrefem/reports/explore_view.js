@@ -574,11 +574,12 @@ function showTexts() {
   DATA.numbers.forEach((number, i) => { text = text.replace(`"@${i}@"`, () => literal(written(number, state.numbers[i]))); });
   $("toml").textContent = text.trim();
 }
+const CERTIFIED = { gas_pressure: WORDS.gas_pressure_Pa, rolling_resistance: WORDS.rolling_resistance_N };
 function makeErrors() {
   const cells = [["anywhere in the section, any time", `${significant(DATA.certificate.field)} K`]];
   const unit = (name) => /^(generated|lost|stored)/.test(name) ? "W" : name === "rolling_resistance" ? "N" : name === "gas_pressure" ? "Pa" : "K";
   for (const name of [...tyre.about.read, "contained-air", "hottest", ...tyre.hotParts.map(([region]) => `${region} max`), "gas_pressure", "rolling_resistance", ...tyre.about.heat, "generated", ...tyre.about.lost, "stored", "lost and stored"]) {
-    if (errors[name] !== undefined) cells.push([short(name).replace(" max", ", its highest"), `${significant(errors[name])} ${unit(name)}`]);
+    if (errors[name] !== undefined) cells.push([CERTIFIED[name] || short(name).replace(" max", ", its highest"), `${significant(errors[name])} ${unit(name)}`]);
   }
   for (const [name, value] of cells) $("errors").append(make("div", {}, make("dt", { text: name }), make("dd", { text: value })));
 }
