@@ -12,6 +12,7 @@ import pandas as pd
 from matplotlib.text import Text
 
 import tyrefem as tf
+from tyrefem.reports.sweep import cell
 from tyrefem.reports.sweep_answer_figures import indices, tornado
 from tyrefem.reports.sweep_figures import curves, pareto
 from tyrefem.sweep.sweep import sweep
@@ -52,12 +53,23 @@ def test_names_on_a_crowded_pareto_front_do_not_cover_each_other() -> None:
 def test_what_a_curve_stands_for_has_its_unit() -> None:
     study = tf.study("nasa-22x5.5-8pr", {"mesh.size": "12 mm", "drive.duration": "20 s"})
     vary = {"drive.speed": ["10 mph", "20 mph"], "drive.load": ["2000 lbf", "2700 lbf"]}
-    swept = sweep(plan_of(study, vary), reduced="never")
+    swept = sweep(plan_of(study, vary, limits={"hottest_degC": {"below": 32}}), reduced="never")
     headings = swept.plan.row(0)
     (speed,) = [name for name in headings if "speed" in name]
-    legend = curves(swept, speed, "hottest_degC").axes[0].get_legend()
+    drawn = curves(swept, speed, "hottest_degC")
+    legend = drawn.axes[0].get_legend()
     assert legend is not None
     assert legend.get_title().get_text() == "load [lbf]"
+    # The limit is written where the legend does not stand.
+    drawn.draw_without_rendering()
+    (limit,) = drawn.axes[0].texts
+    assert limit.get_text() == "limit 32"
+    assert not limit.get_window_extent().overlaps(legend.get_window_extent())
+
+
+def test_a_table_s_cells_are_short_and_have_no_exponent() -> None:
+    values = (79.3731, -0.00010668, 12010, 123456.7, float("nan"), None, "carcass", True)
+    assert [cell(value, 4) for value in values] == ["79.37", "-0.0001067", "12010", "123 457", "", "", "carcass", "yes"]
 
 
 def test_the_page_knows_the_pictures_of_every_answer() -> None:

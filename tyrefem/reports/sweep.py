@@ -23,6 +23,7 @@ from tyrefem.reports import sweep_answer_figures as sweep_answer_figures
 from tyrefem.reports.explore_link import explore_link
 from tyrefem.reports.figures.style import png
 from tyrefem.reports.sweep_figures import figures
+from tyrefem.reports.words import number
 from tyrefem.sweep.pareto import DEFAULT_AIMS
 from tyrefem.sweep.sweep import Sweep
 from tyrefem.variants.answer_units import difference_unit, name_of, shown
@@ -39,6 +40,8 @@ PAGE = "sweep.html"
 
 #: Largest number of rows of the page's tables, and of failures; the files have all.
 ROWS, ROWS_OF_VARIANTS = 60, 500
+#: Significant digits of the tables of answers.
+DIGITS = 4
 
 
 #: Answers in the page's table of variants.
@@ -92,16 +95,16 @@ def _part(part: DesignPart, folder: Path) -> dict[str, Any]:
 
 def _cells(table: pd.DataFrame) -> dict[str, Any]:
     table = table.drop(columns=[name for name in ("failure",) if name in table and not table[name].any()])
-    rows = [[cell(value) for value in row] for row in table.head(ROWS).itertuples(index=False)]
+    rows = [[cell(value, DIGITS) for value in row] for row in table.head(ROWS).itertuples(index=False)]
     return {"columns": list(table.columns), "rows": rows, "total": len(table)}
 
 
 def cell(value: Any, digits: int = 5) -> str:
-    """Text of a table's cell: short numbers, empty for NaN."""
+    """Text of a table's cell: short numbers, whole numbers in full, empty for NaN."""
     if isinstance(value, bool):
         return "yes" if value else "no"
     if isinstance(value, int | float):
-        return "" if value != value else f"{value:.{digits}g}"
+        return "" if value != value else str(value) if isinstance(value, int) else number(value, digits)
     return "" if value is None else str(value)
 
 

@@ -138,7 +138,7 @@ def curves(sweep: Sweep, x: str, answer: str) -> Figure:
             )  # fmt: skip
     else:
         _points(axes, table, x, answer)
-    _limits(axes, sweep, answer)
+    _limits(axes, sweep, answer, within=beside)
     axes.set_xlabel(axis(x), fontsize=FONT)
     axes.set_ylabel(label(answer), fontsize=FONT)
     tidy(axes)
@@ -295,8 +295,11 @@ def pareto(sweep: Sweep, best: pd.DataFrame, x: str, y: str) -> Figure:
     return drawn
 
 
-def _limits(axes: Any, sweep: Sweep, answer: str) -> None:
-    """Draw limits as lines; a limit far from all variants is only written at that end of the axis."""
+def _limits(axes: Any, sweep: Sweep, answer: str, *, within: bool = False) -> None:
+    """Draw limits as lines; a limit far from all variants is only written at that end of the axis.
+
+    ``within``: write them within the axes, because a legend stands beside these.
+    """
     limit = sweep.plan.limits.get(answer)
     low, high = axes.dataLim.intervaly
     words: dict[str, Any] = {"fontsize": FONT - 1.5, "color": BROKEN}
@@ -309,8 +312,11 @@ def _limits(axes: Any, sweep: Sweep, answer: str) -> None:
             axes.annotate(f"limit {value:g} ↓", (0.99, 0.02), xycoords="axes fraction", ha="right", **words)
         else:
             axes.axhline(value, color=BROKEN, lw=0.9, ls="--")
-            place = {"xycoords": ("axes fraction", "data"), "ha": "left", "va": "center"}
-            axes.annotate(f"limit\n{value:g}", (1.005, value), **place, **words)
+            place: dict[str, Any] = {"xycoords": ("axes fraction", "data"), "ha": "left"}
+            if within:
+                axes.annotate(f"limit {value:g}", (0.01, value), va="bottom", **place, **words)
+            else:
+                axes.annotate(f"limit\n{value:g}", (1.005, value), va="center", **place, **words)
 
 
 def _value(value: Any) -> str:
