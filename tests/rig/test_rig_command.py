@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -46,6 +47,8 @@ def test_from_simulation_to_a_card_that_runs(here: Path, capfd: pytest.CaptureFi
     page = (out / "report.html").read_text(encoding="utf-8")
     assert "http" not in page.replace("http-equiv", "")
     assert page.count("data:image/png;base64") == 3
+    assert re.search(r"Diffusivity: tread 0\.\d+ mm²/s", page)
+    assert not re.search(r"<td>[\d.]+e[+]\d", page), "a number of some hundreds with an exponent"
     assert (out / "residuals.csv").read_text(encoding="utf-8").count("\n") == 1 + 3 * 161
     assert not (out / "materials" / "carcass.toml").exists()
     card = material("results/rig-mine-identified/materials/tread.toml")

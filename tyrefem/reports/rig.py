@@ -18,6 +18,7 @@ from tyrefem.output import atomic_folder, jsonable, versions
 from tyrefem.plugins.named import named_plugins, rows_of_plugins
 from tyrefem.reports.figures.style import png
 from tyrefem.reports.rig_figures import heated_patch, histories, layers_figure, pictures, references
+from tyrefem.reports.words import number
 
 if TYPE_CHECKING:
     from tyrefem.heating_test.card import RigCard
@@ -40,6 +41,7 @@ def page(identification: IdentificationData, pictures: Mapping[str, bytes], card
         coverage=COVERAGE,
         references=references(identification.card),
         name_in_words=name_in_words,
+        number=number,
         pictures={name: base64.b64encode(png).decode("ascii") for name, png in pictures.items()},
         cards=cards,
         diffusivities=diffusivities(identification),
