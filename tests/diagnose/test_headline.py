@@ -32,11 +32,12 @@ from tyrefem.diagnose.unknowns.heat_patches import OUTER
 from tyrefem.diagnose.unknowns.unknown import Unknown
 from tyrefem.diagnose.verdicts.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, PARTLY, UNEXPLAINED, certain_members
 from tyrefem.diagnose.words.headline import QUESTIONS, corrections, headline, label
+from tyrefem.diagnose.words.result_tables import rms_table
 from tyrefem.diagnose.words.sentences import noise_words, verdict_words
 from tyrefem.diagnose.words.support import alone_words, stated_words, support_words
 from tyrefem.measured import MeasuredRun
 from tyrefem.reports.diagnosis import page
-from tyrefem.reports.diagnosis_figures import pictures
+from tyrefem.reports.diagnosis_figures import pictures, rms_figure
 from tyrefem.reports.diagnosis_summary import (
     CHARACTERS,
     HEIGHT,
@@ -470,7 +471,15 @@ def test_the_record_and_the_page_hold_the_same_three_sentences(case: Case) -> No
     for sentence in record["headline"]:
         assert sentence in text
         assert sentence in short
+    assert 'href="summary.html"' in text
+    assert 'href="diagnosis.html"' in short
     assert (case.folder / "gap.png").stat().st_size > 10_000
+
+
+def test_readings_that_do_not_deviate_are_drawn(case: Case, monkeypatch: pytest.MonkeyPatch) -> None:
+    table = rms_table(case.diagnosis).assign(before_K=0.0, after_K=0.0, noise_K=0.0)
+    monkeypatch.setattr("tyrefem.reports.diagnosis_figures.rms_table", lambda _: table)
+    assert rms_figure(case.diagnosis).axes[0].get_xlim() == (0.0, 1.0)
 
 
 # -- the summary -------------------------------------------------------------------------------------------------------

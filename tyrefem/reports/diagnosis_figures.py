@@ -65,7 +65,7 @@ def rms_figure(d: DiagnosisData) -> Figure:
     wide, high = (3.9 if columns > 1 else 6.5), 0.33 * len(sensors) + 0.15
     left, step_x, step_y = 1.75, wide + 0.35, high + 0.62
     drawn = figure(left + columns * step_x + 0.1, rows * step_y + TITLE + 0.45)
-    largest = float(table[["before_K", "after_K"]].max().max()) * 1.22
+    largest = float(table[["before_K", "after_K", "noise_K"]].max().max()) * 1.22 or 1.0
     for number, run in enumerate(runs):
         row, column = divmod(number, columns)
         axes = add_axes(drawn, left + column * step_x, 0.75 + (rows - 1 - row) * step_y, wide, high)

@@ -30,6 +30,8 @@ SUMMARY = "summary.html"
 WIDTH, HEIGHT, MARGIN, LINE, GAP = 186.0, 273.0, 12.0, 4.1, 1.8
 #: Characters that surely fit a line of text, and a line of small text.
 CHARACTERS, SMALL_CHARACTERS = 112, 124
+#: Of them, those of the link to the whole page.
+LINK = 28
 #: Least and largest height of the picture, mm.
 LEAST_PICTURE, MOST_PICTURE = 55.0, 125.0
 #: Rows of each table, panels and sensors of the picture.
@@ -59,7 +61,7 @@ def summary(d: DiagnosisData, *, version: str) -> str:
     )  # fmt: skip
     tables, sentences = summary_tables(d), [clipped(sentence) for sentence in headline(d)]
     made = [clipped(sentence) for sentence in _made(d)]
-    origin = clipped(_origin(d, version), SMALL_CHARACTERS)
+    origin = clipped(_origin(d, version), SMALL_CHARACTERS - LINK)
     drawn = gap_figure(d, 7.6, RUNS, SENSORS if len(d.gap.runs) <= RUNS / 2 else SENSORS // 2)
     return environment.get_template("diagnosis_summary.html").render(
         d=d,
@@ -215,7 +217,7 @@ def _moves(move: Movement | None) -> str:
 def _origin(d: DiagnosisData, version: str) -> str:
     tables = dict.fromkeys(Path(str(entry.table)).name for entry in d.original.measured)
     read = f", tables {', '.join(tables)}" if tables else ""
-    return f"Diagnosis of study {d.original.name}{read}, by tyrefem {version}; all of it: diagnosis.html"
+    return f"Diagnosis of study {d.original.name}{read}, by tyrefem {version}"
 
 
 def _made(d: DiagnosisData) -> list[str]:
