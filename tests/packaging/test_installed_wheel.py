@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+import email
 import json
 import os
 import subprocess
 import sys
 import tarfile
 import zipfile
+from collections import defaultdict
+from collections.abc import Iterable, Iterator
+from importlib.metadata import Distribution, distribution
 from pathlib import Path
 from typing import Any
 
 import pytest
+from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name
 
 import tyrefem as tf
 from tyrefem import library
@@ -37,14 +43,57 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     return {"sdist": next(folder.glob("*.tar.gz")), "wheel": next(folder.glob("*.whl"))}
 
 
+def depended_on(wheel: Path) -> Iterator[Distribution]:
+    """The distributions that a wheel requires without extras, and those that they require, as they are installed."""
+    with zipfile.ZipFile(wheel) as archive:
+        name = next(name for name in archive.namelist() if name.endswith(".dist-info/METADATA"))
+        message = email.message_from_bytes(archive.read(name))
+    waiting = [Requirement(text) for text in message.get_all("Requires-Dist", [])]
+    seen: set[tuple[str, str]] = set()
+    while waiting:
+        requirement = waiting.pop()
+        for extra in ("", *requirement.extras):
+            key = canonicalize_name(requirement.name), extra
+            if key in seen or not (requirement.marker is None or requirement.marker.evaluate({"extra": ""})):
+                continue
+            seen.add(key)
+            there = distribution(requirement.name)
+            if not extra:
+                yield there
+            for further in map(Requirement, there.requires or ()):
+                if further.marker is None or further.marker.evaluate({"extra": extra}):
+                    further.marker = None
+                    waiting.append(further)
+
+
+def link(libraries: Iterable[Distribution], site: Path) -> None:
+    """Link what installed distributions have; what several share is a folder of links."""
+    tops = defaultdict(list)
+    for there in libraries:
+        for file in there.files or ():
+            if ".." not in file.parts and file.parts[0] != "__pycache__":
+                tops[file.parts[0]].append((there, file))
+    for top, entries in tops.items():
+        if len({there for there, _ in entries}) == 1:
+            (site / top).symlink_to(Path(str(entries[0][0].locate_file(top))).resolve())
+            continue
+        for there, file in entries:
+            (site / file).parent.mkdir(parents=True, exist_ok=True)
+            (site / file).symlink_to(Path(str(there.locate_file(file))).resolve())
+
+
 @pytest.fixture(scope="session")
 def installed(built: dict[str, Path], tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The ``bin`` folder of an empty environment with the wheel and what it depends on."""
+    """The ``bin`` folder of an empty environment with the wheel and what it depends on.
+
+    The libraries are links to those of the tests: to unpack them again takes longer than all the tests of this file.
+    """
     folder = tmp_path_factory.mktemp("environment")
     run(sys.executable, "-m", "venv", folder, cwd=folder)
     commands = folder / ("Scripts" if os.name == "nt" else "bin")
-    # Bytecode of all the libraries takes longer than bytecode of the modules that are imported below.
-    install = ("install", "-q", "--no-compile", "--disable-pip-version-check")
+    site = run(commands / "python", "-c", "import sysconfig; print(sysconfig.get_path('purelib'))", cwd=folder).stdout
+    link(depended_on(built["wheel"]), Path(site.strip()))
+    install = ("install", "-q", "--no-compile", "--no-deps", "--no-index", "--disable-pip-version-check")
     run(commands / "python", "-m", "pip", *install, built["wheel"], cwd=folder)
     return commands
 
@@ -110,9 +159,9 @@ def test_source_archive_can_be_tested(built: dict[str, Path]) -> None:
 
 
 def test_installed_program_gives_the_checkout_numbers(installed: Path, tmp_path: Path) -> None:
-    run(installed / "tyrefem", "run", STUDY, "--no-pictures", cwd=tmp_path)
+    run(installed / "tyrefem", "run", STUDY, "--no-pictures", "--set", "mesh.size=12 mm", cwd=tmp_path)
     written: dict[str, Any] = json.loads((tmp_path / "results" / STUDY / "summary.json").read_text(encoding="utf-8"))
-    ours = tf.study(STUDY).run().summary()
+    ours = tf.study(STUDY, {"mesh.size": "12 mm"}).run().summary()
     assert written["hottest"]["temperature_degC"] == pytest.approx(ours["hottest"]["temperature_degC"], abs=1e-6)
     assert written["hottest"]["region"] == ours["hottest"]["region"]
     assert (tmp_path / "results" / STUDY / f"vtk/{STUDY}.pvd").is_file()
