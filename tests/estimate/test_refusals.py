@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import subprocess
@@ -240,49 +241,61 @@ def test_harmonics_of_a_footprint(count: Any) -> None:
     refused(lambda: Balance(pressing, count).at_deflection(0.004), "harmonics", words)
 
 
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        (["run", NASA, "--set", "mesh.size=0.101 mm"], "mesh.size: 0.101 mm makes .* GiB"),
-        (["run", NASA, "--set", "output.every=1e-9 s"], "output.every: 1e-09 s makes 6e.11 readings"),
-        (["run", NASA, "--set", "numerics.tolerance=1e-12 K"], "numerics.tolerance: 1e-12 K is below the rounding"),
-        (["sweep", NASA, "--vary", f"drive.speed=10 mph:40 mph:{HUGE}"], "vary: the grid makes 10,000,000 .* GiB"),
-        (
-            ["sweep", NASA, *TWO, "--sample", "sobol", "--count", f"{HUGE}"],
-            "count: .* GiB",
-        ),
-        (
-            ["sweep", NASA, *TWO, "--indices", f"{2**23}"],
-            "count: sample = 'saltelli' makes 33,554,432 variants; .* GiB",
-        ),
-        (
-            ["rig", "simulate", "trtlab", "--every", "1e-9 s"],
-            "--every: 1e-09 s makes 1.66e.12 readings",
-        ),
-        (["rig", "simulate", "trtlab", "--every", "1e308 s"], "--every: .* leaves no reading after the first"),
-        (["export", NASA, "--tolerance", "1e-12 K"], "tolerance: .* at least numerics.tolerance, 0.01 K"),
-        (["road", "averaging", "--thickness", "1e308 mm"], "--thickness: .* at most 10 m"),
-        (["slide", "locked-wheel", "--friction", "1e308"], "--friction: .* at most 100"),
-    ],
-)
-def test_the_command_line_answers_at_once_and_without_memory(arguments: list[str], words: str, tmp_path: Path) -> None:
+#: Command line -> words of its error.
+LINES: list[tuple[list[str], str]] = [
+    (["run", NASA, "--set", "mesh.size=0.101 mm"], "mesh.size: 0.101 mm makes .* GiB"),
+    (["run", NASA, "--set", "output.every=1e-9 s"], "output.every: 1e-09 s makes 6e.11 readings"),
+    (["run", NASA, "--set", "numerics.tolerance=1e-12 K"], "numerics.tolerance: 1e-12 K is below the rounding"),
+    (["sweep", NASA, "--vary", f"drive.speed=10 mph:40 mph:{HUGE}"], "vary: the grid makes 10,000,000 .* GiB"),
+    (
+        ["sweep", NASA, *TWO, "--sample", "sobol", "--count", f"{HUGE}"],
+        "count: .* GiB",
+    ),
+    (
+        ["sweep", NASA, *TWO, "--indices", f"{2**23}"],
+        "count: sample = 'saltelli' makes 33,554,432 variants; .* GiB",
+    ),
+    (
+        ["rig", "simulate", "trtlab", "--every", "1e-9 s"],
+        "--every: 1e-09 s makes 1.66e.12 readings",
+    ),
+    (["rig", "simulate", "trtlab", "--every", "1e308 s"], "--every: .* leaves no reading after the first"),
+    (["export", NASA, "--tolerance", "1e-12 K"], "tolerance: .* at least numerics.tolerance, 0.01 K"),
+    (["road", "averaging", "--thickness", "1e308 mm"], "--thickness: .* at most 10 m"),
+    (["slide", "locked-wheel", "--friction", "1e308"], "--friction: .* at most 100"),
+]
+
+
+@pytest.fixture(scope="module")
+def answers(tmp_path_factory: pytest.TempPathFactory) -> tuple[list[str], Path]:
+    """One line for every command line: exit code, peak of memory so far, seconds, error. All run in one process."""
+    folder = tmp_path_factory.mktemp("refused")
     environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
     code = (
-        "import resource, sys; from tyrefem.cli import main; limit = 4 * 2**30; "
-        "resource.setrlimit(resource.RLIMIT_AS, (limit, limit)); code = main(sys.argv[1:]); "
+        "import contextlib, io, json, resource, sys, time; from tyrefem.cli import main; limit = 4 * 2**30; "
+        "resource.setrlimit(resource.RLIMIT_AS, (limit, limit))\n"
+        "for line in json.load(sys.stdin):\n"
+        "    began, err = time.process_time(), io.StringIO()\n"
+        "    with contextlib.redirect_stderr(err):\n"
+        "        code = main(line)\n"
         # Not ru_maxrss: that counts what the test's own process had when it started this one.
-        "peak = next(line.split()[1] for line in open('/proc/self/status') if line.startswith('VmHWM')); "
-        "print(peak, sum(resource.getrusage(resource.RUSAGE_SELF)[:2])); "
-        "sys.exit(code)"
+        "    peak = next(line.split()[1] for line in open('/proc/self/status') if line.startswith('VmHWM'))\n"
+        "    print(json.dumps([code, int(peak), time.process_time() - began, err.getvalue()]), flush=True)\n"
     )
     done = subprocess.run(
-        [sys.executable, "-c", code, *arguments], cwd=tmp_path, env=environment, capture_output=True, text=True,
-        timeout=60, check=False,
+        [sys.executable, "-c", code], cwd=folder, env=environment, capture_output=True, text=True, timeout=120,
+        input=json.dumps([line for line, _ in LINES]), check=True,
     )  # fmt: skip
-    (line,) = done.stderr.splitlines()
-    assert re.search(words, line), line
-    assert done.returncode == 2
-    kilobytes, seconds = map(float, done.stdout.split())
+    return done.stdout.splitlines(), folder
+
+
+@pytest.mark.parametrize("number", range(len(LINES)), ids=[" ".join(line[:2]) for line, _ in LINES])
+def test_the_command_line_answers_at_once_and_without_memory(answers: tuple[list[str], Path], number: int) -> None:
+    lines, folder = answers
+    code, kilobytes, seconds, err = json.loads(lines[number])
+    (line,) = err.splitlines()
+    assert re.search(LINES[number][1], line), line
+    assert code == 2
     assert kilobytes < 300_000
     assert seconds < 10
-    assert list(tmp_path.rglob("*")) == []
+    assert list(folder.rglob("*")) == []
