@@ -212,6 +212,7 @@ def test_every_command_lists_the_plugins_that_take_part(
 
 
 def test_a_diagnosis_that_lacks_heat_has_documented_keys_too(here: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    (here / "study.toml").write_text(small.study(measured=small.MEASURED + small.SECOND), encoding="utf-8")
     (here / "measured.csv").write_text(small.table(0.3, 0.2), encoding="utf-8")
     command = next(each for each in commands() if each.words == "diagnose")
     assert main(command.line(here / "new" / "out", "--json")) == 0
