@@ -19,7 +19,8 @@ COARSE = {"mesh.size": "12 mm", "mechanics.motion": "linear"}
 
 
 def rolled(section: str = "half", motion: str = "linear") -> RollingWheel:
-    tyre = study(STUDY, COARSE | {"mesh.section": section})
+    coarser = {"mesh.size": "16 mm"} if motion == "large" else {}
+    tyre = study(STUDY, COARSE | coarser | {"mesh.section": section})
     return tyre.roll(slip_angle=math.radians(4), camber=math.radians(3), slip=0.02, motion=motion, tolerance=1.0)
 
 

@@ -22,7 +22,7 @@ from tyrefem.mechanics.rolling.standing import StandingTyre, as_it_rolls, standi
 from tyrefem.mechanics.rolling.steady_rolling import RollingLoads, SteadyRolling
 from tyrefem.mechanics.rolling.tread_influence import PHASE, TreadInfluence
 
-HARMONICS = 30
+HARMONICS = 20
 
 
 @functools.lru_cache(1)
