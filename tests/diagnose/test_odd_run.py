@@ -26,7 +26,9 @@ from tyrefem.diagnose.unknowns.unknown import base_unknowns
 from tyrefem.diagnose.verdicts.verdict import UNEXPLAINED
 from tyrefem.diagnose.words.sentences import verdict_words
 
-COARSE = DiagnosisSettings(mesh_size="8 mm", largest=3, looks=2)
+COARSE = DiagnosisSettings(
+    mesh_size="8 mm", largest=2, looks=2, heat_widths=(3.0,), discrepancy_sizes=(1.0,), beside_sets=2
+)
 HOT: dict[str, Any] = {"name": "hot-road", "warmer_by": "25 delta_degC"}
 ODD = "loaded"
 

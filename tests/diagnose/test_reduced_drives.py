@@ -221,8 +221,12 @@ def test_the_error_that_cannot_change_a_verdict_grows_with_its_lead(
     assert allowed_error(cast(Ranking, result), DEFAULT) == pytest.approx(allowed)
 
 
+#: Each kind of discrepancy is tried in one size, and no effect in single runs.
+FEWER = DiagnosisSettings(largest=1, looks=1, heat_widths=(3.0,), discrepancy_sizes=(1.0,), odd_run_share=0.0)
+
+
 def diagnosed(drives: Drives, **options: Any) -> DiagnosisData:
-    return drives.study.diagnose(largest=1, looks=1, known=drives.known, rerun=False, **options)
+    return drives.study.diagnose(settings=FEWER, known=drives.known, rerun=False, **options)
 
 
 @pytest.fixture(scope="module")
@@ -265,14 +269,14 @@ PARTS: dict[str, dict[str, Any]] = {
     "exhaustive": {"strategy": Exhaustive()},
     "bic": {"criterion": BIC()},
     "few candidates": {"candidates": lambda study: catalogue_candidates(study)[:2]},
-    "settings": {"settings": DiagnosisSettings(batch=1, singles=2)},
+    "settings": {"settings": replace(FEWER, batch=1, singles=2)},
 }
 
 
 @pytest.mark.parametrize("parts", PARTS)
 def test_the_parts_of_a_diagnosis_are_replaced_one_by_one(drives: Drives, never: DiagnosisData, parts: str) -> None:
     known = {} if parts == "few candidates" else {"known": drives.known}
-    result = drives.study.diagnose(largest=1, looks=1, rerun=False, **known, **PARTS[parts])
+    result = drives.study.diagnose(rerun=False, **known, **{"settings": FEWER, **PARTS[parts]})
     assert result.verdict == "identified"
     assert [unknown.key for unknown in result.best.members] == ["hot-road"]
     (amplitude,) = result.best.members[0].amplitudes

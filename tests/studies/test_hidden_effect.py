@@ -21,7 +21,11 @@ def test_the_table_is_what_the_truth_says(request: pytest.FixtureRequest) -> Non
 
 def test_the_hidden_effect_is_found() -> None:
     diagnosis = tf.study("hidden-effect").diagnose(
-        settings=DiagnosisSettings(mesh_size="8 mm", largest=1, looks=1), rerun=False
+        settings=DiagnosisSettings(
+            mesh_size="8 mm", largest=1, looks=1, odd_run_share=0.0, heat_widths=(3.0,), discrepancy_sizes=(1.0,)
+        ),
+        rerun=False,
+        verdict_only=True,
     )
     assert diagnosis.verdict == "identified"
     assert [member.name for member in diagnosis.judgement.best.members] == [HIDDEN]
