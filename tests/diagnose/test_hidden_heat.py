@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hidden import COARSE, COARSE_MESH, END, FINER_MESH, measure, study
+from hidden import COARSE_MESH, END, FINER_MESH, HASTY, measure, study
 
 from tyrefem.diagnose.verdicts.verdict import IDENTIFIED, PARTLY, UNEXPLAINED
 from tyrefem.diagnose.words.heat import inside_share
@@ -17,6 +17,7 @@ from tyrefem.diagnose.words.sentences import missing_heat_words, verdict_words
 from tyrefem.reports.diagnosis_law import leading_signatures
 from tyrefem.reports.diagnosis_missing import by_run, drawn_sources
 
+COARSE = replace(HASTY, mesh_size=COARSE_MESH)
 PLACE = {"station": "100 mm", "width": "13 mm"}
 
 
@@ -104,7 +105,7 @@ def test_heat_that_begins_late_is_dated_and_its_draft_effect_is_identified(
     assert law["draft_effect"] == f"effects/{draft.name}"
     assert any(f"effects/{draft.name}" in sentence for sentence in verdict_words(d))
     assert "inferred from" in draft.read_text(encoding="utf-8")
-    second = owner.diagnose(settings=COARSE, effects=draft.parent)
+    second = owner.diagnose(settings=COARSE, effects=draft.parent, rerun=False, verdict_only=True)
     assert second.verdict == IDENTIFIED
     (member,) = second.best.members
     assert member.name == draft.stem.replace("_", "-")
