@@ -33,6 +33,10 @@ def test_files_agree(here: Path, capfd: pytest.CaptureFixture[str]) -> None:
     with (folder / "contact.csv").open(encoding="utf-8") as lines:
         points = list(csv.DictReader(lines))
     assert {point["state"] for point in points} == {"0", "1", "2"}
+    # Points that open in a step have friction power in it, but no sliding: only the column sums up to the balance.
+    by_point = [float(point["friction_power_W"]) for point in points]
+    assert sum(by_point) == pytest.approx(numbers["friction_power_W"], rel=1e-6)
+    assert sum(by_point) == pytest.approx(numbers["axle_power_W"], rel=1e-2)
     assert numbers["peak_contact_pressure_Pa"] == pytest.approx(max(float(p["pressure_Pa"]) for p in points))
     for name in ("contact.png", "rings.png"):
         assert (folder / name).read_bytes().startswith(b"\x89PNG")
@@ -41,6 +45,7 @@ def test_files_agree(here: Path, capfd: pytest.CaptureFixture[str]) -> None:
     surface = meshio.read(folder / "contact.vtu")
     assert len(surface.points) == len(points)
     assert surface.point_data["pressure_Pa"].max() == pytest.approx(max(float(p["pressure_Pa"]) for p in points))
+    assert surface.point_data["friction_power_W"].sum() == pytest.approx(sum(by_point), rel=1e-6)
 
 
 def test_a_curve(here: Path, capfd: pytest.CaptureFixture[str]) -> None:
