@@ -19,7 +19,8 @@ from tyrefem.geometry.builder import section_of
 from tyrefem.materials.card import MaterialCard
 from tyrefem.materials.wear import Wear
 from tyrefem.wear.ring_wear import RingWear, tread_table
-from tyrefem.wear.worn_section import LEFT, WornProfile, worn_section
+from tyrefem.wear.worn_section import LEFT, WornFace, WornProfile, worn_section
+from tyrefem.wear.worn_shoulder import WornShoulder
 
 TABLE = {"depth": "5 nm", "energy": "1 kJ/m**2", "source": "test"}
 STUDY = "passenger-205-55r16"
@@ -118,7 +119,8 @@ def test_a_worn_section_loads_and_is_thinner_by_the_wear(tmp_path: Path) -> None
     old = load(str(tmp_path / "worn.toml"))
     s = np.array([0.0, 0.03, 0.06])
     gone = new.total_thickness(s) - old.total_thickness(s)
-    np.testing.assert_allclose(gone, WornProfile.of(new, wear)(s) * 10_000.0, rtol=1e-3)
+    worn = WornFace.of(new, wear)
+    np.testing.assert_allclose(gone, worn.profile(s) * worn.ring_kilometres(10_000.0), rtol=1e-3)
     beyond = np.array([0.09, 0.12])
     np.testing.assert_allclose(old.total_thickness(beyond), new.total_thickness(beyond), atol=1e-6)
     changes = {"section": str(tmp_path / "worn.toml"), "sensors.shoulder-surface.depth": "13 mm", "mesh.size": "8 mm"}
@@ -128,7 +130,6 @@ def test_a_worn_section_loads_and_is_thinner_by_the_wear(tmp_path: Path) -> None
 
 
 @pytest.mark.fast
-@pytest.mark.fast
 def test_a_worn_section_loses_the_volume_of_its_rings() -> None:
     """Means over 10 mm alone change it by 1 % where wear grows towards the edges."""
     even = rings()
@@ -136,6 +137,40 @@ def test_a_worn_section_loses_the_volume_of_its_rings() -> None:
     profile = WornProfile.of(load(STUDY), edges)
     s = load(STUDY).locate(edges.places.T)[0]
     assert profile(s) @ edges.areas == pytest.approx(edges.volume_per_km, rel=1e-9)
+
+
+@pytest.mark.fast
+def test_the_worn_face_goes_on_to_the_shoulder() -> None:
+    """No step at the last ring; the shoulder's rubber is in the volume of the rings."""
+    study, even = tf.study(STUDY), rings(150.0, count=401)
+    new, kilometres = study.section, 20_000.0
+    rubber = ~new.in_groove(new.locate(even.places.T)[0])
+    sides = np.stack([np.ones(401), np.sign(np.linspace(-1, 1, 401))])
+    widths = np.hypot(*np.gradient(even.places * sides, axis=1))[rubber]
+    wear = replace(even, places=even.places[:, rubber], widths=widths, power=even.power[rubber])
+    old = section_of((worn_section(study, wear, kilometres), Path("worn.toml"), "worn"))
+    s = np.linspace(0.0, 0.12, 2401)
+    gone = new.total_thickness(s) - old.total_thickness(s)
+    end, deepest = 0.0775, gone[s <= 0.0775].max()
+    beyond = (s > end + 0.5e-3) & (gone > 0.1 * deepest)
+    assert deepest > 1.5e-3
+    assert beyond.sum() * (s[1] - s[0]) > 1e-3
+    assert np.abs(np.diff(gone)).max() < s[1] - s[0]
+    lost = (2 if new.half else 1) * (new.volume() - old.volume())
+    assert lost == pytest.approx(wear.volume_per_km * kilometres, rel=0.01)
+
+
+def test_the_shoulder_of_a_cylinder_is_cut_along_its_face() -> None:
+    """A tread 0.3 m from the axis whose shoulder falls by 45 degrees: as far outwards as down, a triangle."""
+    s = np.linspace(0.0, 0.02, 201)
+    places = np.column_stack([0.3 - s, 0.07 + s])
+    shoulder = WornShoulder(s, places, np.tile([1.0, 0.0], (201, 1)), s, np.ones(201))
+    assert shoulder.reach(4e-3) == pytest.approx(4e-3)
+    np.testing.assert_allclose(
+        shoulder.depth(np.array([-0.01, 1e-3, 3e-3, 5e-3]), 4e-3), [0.0, 3e-3, 1e-3, 0.0], atol=1e-9
+    )
+    radius = 0.3 - 4e-3 * 2 / 3
+    assert shoulder.volume(4e-3) == pytest.approx(2 * 2 * np.pi * radius * 8e-6, rel=1e-4)
 
 
 def test_a_tread_that_is_worn_through_is_refused() -> None:

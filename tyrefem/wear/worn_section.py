@@ -14,9 +14,11 @@ from tyrefem.errors import InputError
 from tyrefem.quantity import parse
 from tyrefem.sizes.drawn import millimetres
 from tyrefem.wear.ring_wear import RingWear
+from tyrefem.wear.worn_shoulder import WornShoulder
 
 if TYPE_CHECKING:
     from tyrefem.geometry import Section
+    from tyrefem.geometry.layer import Layer
     from tyrefem.inputs.study import StudyData
 
 Array = NDArray[np.float64]
@@ -26,6 +28,8 @@ LEFT = 0.5e-3
 WINDOW = 5e-3
 #: Stations of the worn thickness along the tread: an even step of its length.
 STATIONS = 60
+#: The same over the worn shoulder.
+SHOULDER_STATIONS = 12
 #: Digits of the card's lengths in mm.
 DIGITS = 7
 
@@ -51,8 +55,62 @@ class WornProfile:
         return cls(stations, mean * (float(wear.depth_per_km @ wear.areas) / whole if whole > 0 else 1.0))
 
     def __call__(self, s: Array) -> Array:
-        """Depth per km at stations, m; 0 beyond the last ring."""
-        return np.interp(np.abs(s), self.s, self.depth, right=0.0)
+        """Depth per km at stations, m; beyond the last ring that of the last ring."""
+        return np.interp(np.abs(s), self.s, self.depth)
+
+
+@dataclass(frozen=True, eq=False)
+class WornFace:
+    """Depth worn over the meridian by a distance, with the shoulder beyond the last ring.
+
+    The friction of the rings wears the shoulder too, so they wear as by a shorter distance: the volume is the rings'.
+
+    Parameters
+    ----------
+    profile : of the rings. shoulder : beyond them. volume : of the rings per km, m3.
+    """
+
+    profile: WornProfile
+    shoulder: WornShoulder
+    volume: float
+
+    @classmethod
+    def of(cls, section: Section, wear: RingWear) -> WornFace:
+        """Of rings on a section."""
+        profile = WornProfile.of(section, wear)
+        return cls(profile, WornShoulder.of(section, float(profile.s[-1])), wear.volume_per_km)
+
+    @property
+    def end(self) -> float:
+        """Station of the last ring, m."""
+        return float(self.profile.s[-1])
+
+    def kilometres(self, ring_km: float) -> float:
+        """Distance, km, by which the rings wear as by ``ring_km`` without a shoulder."""
+        if not self.volume:
+            return ring_km
+        return ring_km + self.shoulder.volume(ring_km * float(self.profile.depth[-1])) / self.volume
+
+    def ring_kilometres(self, kilometres: float) -> float:
+        """Inverse of `kilometres`."""
+        from scipy.optimize import brentq
+
+        return float(brentq(lambda km: self.kilometres(km) - kilometres, 0.0, kilometres, xtol=1e-9 * kilometres))
+
+    def depth(self, s: Array, ring_km: float) -> Array:
+        """Depth at stations, m, where the rings wear as by ``ring_km`` without a shoulder."""
+        beyond = self.shoulder.depth(s, ring_km * float(self.profile.depth[-1]))
+        return np.where(s > self.end, beyond, self.profile(s) * ring_km)
+
+    @property
+    def everywhere(self) -> Array:
+        """Stations of any depth, m."""
+        return np.union1d(np.linspace(0.0, self.end, STATIONS), self.shoulder.s)
+
+    def stations(self, ring_km: float) -> Array:
+        """Stations that resolve the depth, m."""
+        reach = self.shoulder.reach(ring_km * float(self.profile.depth[-1]))
+        return np.union1d(np.linspace(0.0, self.end, STATIONS), np.linspace(self.end, reach, SHOULDER_STATIONS))
 
 
 def worn_section(study: StudyData, wear: RingWear, kilometres: float) -> dict[str, Any]:
@@ -74,21 +132,15 @@ def worn_section(study: StudyData, wear: RingWear, kilometres: float) -> dict[st
             " it by a layer under the tread"
         )
         raise InputError(message, field="section.line.reference", file=study.file)
-    profile, outer = WornProfile.of(section, wear), section.layers[-1]
-    ends = profile.s[-1]
-    s = np.union1d(np.asarray(outer.thickness.s), np.linspace(0.0, ends, STATIONS))
+    worn, outer = WornFace.of(section, wear), section.layers[-1]
+    ring_km = worn.ring_kilometres(kilometres)
+    table = np.asarray(outer.thickness.s)
+    _check_left(worn, np.union1d(table, worn.everywhere), outer, ring_km)
     # Stations less than 10 micrometres apart are one.
-    s = np.unique(np.round(np.append(s, min(ends * (1 + 1e-3), section.line.length)), 5))
+    s = np.unique(np.round(np.union1d(table, worn.stations(ring_km)), 5))
     # The table still reaches the end of the meridian.
-    s[-1] = outer.thickness.s[-1]
-    thickness, depth = outer.thickness(s), profile(s) * kilometres
-    # Beyond the tread the layer may be thinner than what a tread must keep.
-    reach = np.where(depth > 0, thickness - LEFT - depth, np.inf)
-    if (reach < 0).any():
-        most = float(np.min(((thickness - LEFT) / np.maximum(profile(s), 1e-30))[depth > 0]))
-        at = s[int(np.argmin(reach))] * 1e3
-        message = f"the tread is worn through {at:.0f} mm from the crown: {most:,.0f} km leave {LEFT * 1e3:g} mm"
-        raise InputError(message, field="distance")
+    s[-1] = table[-1]
+    thickness, depth = outer.thickness(s), worn.depth(s, ring_km)
     data, _, _ = library.load("section", study.data["section"], study.folder)
     if "layers" not in data:
         message = "the section is drawn from a size: write it with 'tyrefem new section' first"
@@ -99,10 +151,31 @@ def worn_section(study: StudyData, wear: RingWear, kilometres: float) -> dict[st
     layer["source"] = f"{layer.get('source', '')}; tread worn by {kilometres:,.0f} km (tyrefem wear)"
     _without_scales(data, section)
     if "outer_diameter" in data.get("parameters", {}):
-        crown = float(profile(np.zeros(1))[0]) * kilometres
+        crown = float(worn.profile(np.zeros(1))[0]) * ring_km
         data["parameters"]["outer_diameter"] = f"{(section.outer_diameter - 2 * crown) * 1e3:.6g} mm"
     data["title"] = f"{data.get('title', section.name)}, worn by {kilometres:,.0f} km"
     return data
+
+
+def _check_left(worn: WornFace, s: Array, outer: Layer, ring_km: float) -> None:
+    """Raise `InputError` where less than `LEFT` is left of a layer at stations, m.
+
+    Beyond the wear the layer may be thinner than what a tread must keep.
+    """
+    from scipy.optimize import brentq
+
+    rubber = outer.thickness(s) - LEFT
+
+    def left(km: float) -> Array:
+        depth = worn.depth(s, km)
+        return np.where(depth > 0, rubber - depth, rubber.max())
+
+    lacking = left(ring_km)
+    if lacking.min() < 0:
+        most = worn.kilometres(float(brentq(lambda km: left(km).min(), 0.0, ring_km)))
+        at = s[int(np.argmin(lacking))] * 1e3
+        message = f"the tread is worn through {at:.0f} mm from the crown: {most:,.0f} km leave {LEFT * 1e3:g} mm"
+        raise InputError(message, field="distance")
 
 
 def _without_scales(data: dict[str, Any], section: Section) -> None:
