@@ -53,6 +53,19 @@ def test_heat_of_the_rings_is_the_friction_power_of_roll():
     assert 2 * math.pi * result.tyre.motion(60.0).revolutions_per_second == pytest.approx(rolled.state.spin, rel=1e-9)
 
 
+def test_the_footprint_in_the_summary_is_that_of_the_rolling_tyre():
+    """Length, width and area of one contact, with its harmonics and error."""
+    result = run(camber="4 deg")
+    rolled = result.study.roll(camber=math.radians(4))
+    written = result.summary()["footprint"]
+    wanted = rolled.summary()
+    for name in ("length_m", "width_m", "area_m2"):
+        assert written[name] == pytest.approx(wanted[f"footprint_{name}"], rel=1e-9)
+    upright = result.tyre.schedule.cycles[0][0].footprint.tyre.footprint
+    assert written["width_m"] != pytest.approx(upright.width, rel=1e-3)
+    assert (written["harmonics"], written["error"]) == (wanted["harmonics"], pytest.approx(wanted["error"], rel=1e-6))
+
+
 @pytest.mark.parametrize("rolling", [False, True])
 @pytest.mark.parametrize("motion", ["linear", "large"])
 def test_hysteresis_is_that_of_roll(motion, rolling):

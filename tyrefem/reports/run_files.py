@@ -51,7 +51,7 @@ def footprint_summary(cycle: PressedCycle | None) -> dict[str, Any]:
         "width_m": footprint.width,
         "area_m2": footprint.area,
         "rolling_radius_m": footprint.rolling_radius,
-        "harmonics": footprint.harmonics,
+        "harmonics": footprint.contact_harmonics,
         "error": footprint.error,
     }
     if footprint.motion == "linear" and cycle.linearisation_error is not None:

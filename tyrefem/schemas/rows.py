@@ -65,7 +65,7 @@ ROWS: dict[str, Keys] = {
         "tangent_stiffness_N_m": "number: Slope of the load.", "length_m": "number: Length.",
         "width_m": "number: Width.", "area_m2": "number: Area of rubber in contact.",
         "rolling_radius_m": "number: Travel per radian.", "harmonics": "integer: Number of Fourier harmonics.",
-        "error": "number: Their relative error.",
+        "error": "number: Their relative error; of rolling with friction, that of the horizontal force.",
         "left_out_by_linear_strains*": "table: Strains that linear strains leave out.",
     },
     "run.contained_air": {

@@ -86,6 +86,11 @@ class Footprint(Brief):
         return self.grid.harmonics
 
     @property
+    def contact_harmonics(self) -> int:
+        """Highest harmonic of the contact that has this length, width and area."""
+        return self.harmonics
+
+    @property
     def unstable(self) -> tuple[int, ...]:
         """Harmonics in which a motion has negative stiffness: the linearisation may not hold there."""
         return tuple(n for n, count in sorted(self.pressing.harmonics.negative_pivots.items()) if count)

@@ -16,6 +16,7 @@ from tyrefem.materials.reads import FEM_ROLLING, key_of, values_read
 from tyrefem.mechanics.footprint.footprint import Footprint
 from tyrefem.mechanics.footprint.pressed_tyre import inputs
 from tyrefem.mechanics.footprint.strain_harmonics import StrainHarmonics
+from tyrefem.mechanics.rolling.contact_patch import ContactPatch
 from tyrefem.mechanics.rolling.friction_rings import FrictionRings
 from tyrefem.mechanics.rolling.lagging_strains import LaggingFootprint, LaggingStrains, strain_amplitudes
 from tyrefem.mechanics.rolling.roll import (
@@ -74,21 +75,21 @@ def _sum(first: Complex, second: Complex) -> Complex:
 
 @dataclass(frozen=True, eq=False)
 class RolledFootprint(LaggingFootprint):
-    """The footprint of a tyre that rolls with friction: load, deflection, area and length are those of this tyre.
+    """The footprint of a tyre that rolls with friction: load, deflection and size are those of this tyre.
 
-    Forces, pressure and shape are those of the upright tyre without friction, beside it.
+    ``error`` is that of `RolledStudy`. Forces, pressure and shape are those of the upright tyre without friction.
 
     Parameters
     ----------
     rolling : `SectionFields` of the tyre; in large motion those of the forces that friction adds.
     travel : m rolled per radian over the share of the speed that the drive's slip leaves. friction : of the rings.
-    touched_length, touched_area : m, m2. pressed : the upright tyre.
+    patch : size of the contact. rolled_harmonics : highest of them. pressed : the upright tyre.
     turn : rad, of the pressed shape round the wheel in large motion.
     """
 
     friction: FrictionRings | None = None
-    touched_length: float = 0.0
-    touched_area: float = 0.0
+    patch: ContactPatch | None = None
+    rolled_harmonics: int = 0
     pressed: Pressed | None = None
     turn: float = 0.0
 
@@ -126,28 +127,44 @@ class RolledFootprint(LaggingFootprint):
         return self.pressed
 
     @property
+    def touched(self) -> ContactPatch:
+        """Size and pressure of the contact."""
+        assert self.patch is not None
+        return self.patch
+
+    @property
     def length(self) -> float:
         """Greatest length, m."""
-        return self.touched_length
+        return self.touched.length
+
+    @property
+    def width(self) -> float:
+        """Axial extent of the contact, m, with the grooves between."""
+        return self.touched.width
 
     @property
     def area(self) -> float:
         """Contact area, m2."""
-        return self.touched_area
+        return self.touched.area
+
+    @property
+    def contact_harmonics(self) -> int:
+        """Highest harmonic of the contact with friction."""
+        return self.rolled_harmonics
 
     @classmethod
     def of_rolled(cls, rolled: RolledStudy, forward: float) -> RolledFootprint:
         """Of a rolling tyre; ``forward``: `WheelState.forward`."""
         state, upright = rolled.state, rolled.wheel.pressed.footprint
         parts: dict[str, Any] = {part.name: getattr(upright, part.name) for part in fields(Footprint)}
-        parts |= {"load": float(state.force[2]), "deflection": state.deflection}
+        parts |= {"load": float(state.force[2]), "deflection": state.deflection, "error": rolled.error}
         return cls(
             **parts,
             rolling=state.added_fields,
             travel=state.travel * forward,
             friction=FrictionRings.of(rolled),
-            touched_length=state.patch.length,
-            touched_area=state.patch.area,
+            patch=state.patch,
+            rolled_harmonics=state.harmonics,
             pressed=rolled.wheel.pressed,
             turn=state.grid.turn,
         )
