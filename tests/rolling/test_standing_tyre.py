@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -14,13 +15,19 @@ from tyrefem.errors import InputError
 from tyrefem.mechanics.footprint.compliance import TreadCompliance
 from tyrefem.mechanics.footprint.contact import Pressing
 from tyrefem.mechanics.footprint.example_tyre import PlainTyre
+from tyrefem.mechanics.footprint.harmonics import Harmonics
 from tyrefem.mechanics.rolling.contact_body import ContactBody
+from tyrefem.mechanics.rolling.friction import OPEN
+from tyrefem.mechanics.rolling.loaded_tyre import TyreOnFootprint
 from tyrefem.mechanics.rolling.lossy_harmonics import LossyHarmonics
+from tyrefem.mechanics.rolling.pushed_contact import push_forces, pushed_body
 from tyrefem.mechanics.rolling.roll import wheel_on_road
 from tyrefem.mechanics.rolling.rolling_motion import RollingMotion
 from tyrefem.mechanics.rolling.standing import StandingTyre, as_it_rolls, standing_stiffness
 from tyrefem.mechanics.rolling.steady_rolling import RollingLoads, SteadyRolling
+from tyrefem.mechanics.rolling.stiffened_footprint import StiffenedOnFootprint
 from tyrefem.mechanics.rolling.tread_influence import PHASE, TreadInfluence
+from tyrefem.mechanics.solid.stiffened import stiffened
 
 HARMONICS = 20
 
@@ -46,6 +53,76 @@ def test_the_amplitude_of_the_cards_is_their_modulus() -> None:
     assert as_it_rolls(rolled) == rolls
     assert stands.longitudinal == pytest.approx(rolls.longitudinal, rel=1e-9)
     assert stands.lateral == pytest.approx(rolls.lateral, rel=1e-9)
+
+
+@functools.lru_cache(1)
+def on_footprint() -> StandingTyre:
+    """In large motion; its cards have one modulus."""
+    wheel = wheel_on_road(study("nasa-22x5.5-8pr", {"mesh.size": "16 mm"}), load=6000.0, motion="large")
+    return StandingTyre(wheel.pressed, wheel.free(54))
+
+
+def test_a_push_meets_the_compliance_of_the_footprint() -> None:
+    """Forces that push the inflated tyre's compliance by 1 push the footprint by more, sideways; those of the standing
+    tyre push it by 1."""
+    rolled = on_footprint().rolled
+    grid, axes, states = rolled.grid, rolled.axes, rolled.contact.states
+    assert grid.shape is not None
+    assert grid.shape.loaded is not None
+    tyre, points = grid.shape.loaded.tyre, grid.points_on_wheel()
+    inflated = ContactBody(grid.compliance(axes), grid.upstream)
+
+    def pushed(forces: np.ndarray) -> np.ndarray:
+        """Displacement of the points along their axes: of the footprint in the harmonics of its motion."""
+        vectors = np.einsum("kax,ka->kx", axes, forces).reshape(len(grid.angles), -1, 3)
+        along = np.einsum("jpx,jcx->jcp", vectors, grid.wheel_axes)
+        more = np.zeros_like(along)
+        for family in tyre.families:
+            loads = points.loads(family, along, len(tyre.motion))
+            motion = family.of_loaded(loads)[:, family.tread] - family.of_inflated(loads)
+            more += points.displacements(family, motion[None])[..., 0]
+        low = np.tensordot(inflated.compliance, forces, axes=2)
+        return (low + grid.along(axes, grid.from_wheel(more)))[states != OPEN]
+
+    for direction, less in ((0, 0.0), (1, 0.04)):
+        wanted = np.eye(3)[1 + direction]
+        forces = push_forces(pushed_body(grid, axes, states, tyre), states)[direction]
+        assert np.abs(pushed(forces) - wanted).max() < 0.02
+        before = push_forces(inflated, states)[direction]
+        # The work of the push, over what it would be without the footprint.
+        work = (before[states != OPEN] * pushed(before)).sum() / before[:, 1 + direction].sum()
+        assert work > 1 + less
+
+
+def test_without_laws_of_strain_the_tyre_stands_as_it_rolls_in_large_motion() -> None:
+    stands, rolls = on_footprint().stiffness(), as_it_rolls(on_footprint().rolled)
+    assert stands.lateral == pytest.approx(rolls.lateral, rel=1e-3)
+    assert stands.longitudinal == pytest.approx(rolls.longitudinal, rel=1e-3)
+    rolled = on_footprint().rolled
+    inflated = ContactBody(rolled.grid.compliance(rolled.axes), rolled.grid.upstream)
+    assert stands.lateral < 0.96 * standing_stiffness(inflated, rolled.contact.states).lateral
+
+
+def test_stiff_rubber_leaves_stresses_as_they_are() -> None:
+    """Without motion the tangent is the stiffness of the stiffened state; with it, only moduli are added."""
+    pressing = Pressing(PlainTyre().state(along=4))
+    state, count = pressing.state, 3
+    stiff = stiffened(state, np.full(state.bulk.shape, 1.7))
+    rng = np.random.default_rng(1)
+    change = rng.standard_normal((count, pressing.harmonics.elements.n_dofs))
+    flat = pressing.at_deflection(0.01, 24)
+    still = replace(flat, balanced=np.zeros_like(change))
+    tangent = StiffenedOnFootprint(still, TreadInfluence(pressing.tread), stiff=stiff).tangent
+    products = tangent.product(change)
+    # Components that no wave of n = 0 has.
+    for n in range(1, count):
+        wanted = Harmonics(stiff).stiffness(n) @ change[n]
+        assert np.abs(products[n] - wanted).max() < 1e-4 * np.abs(wanted).max()
+    bent = replace(flat, balanced=1e-3 * rng.standard_normal(change.shape))
+    same = StiffenedOnFootprint(bent, TreadInfluence(pressing.tread), stiff=stiffened(state, np.ones(state.bulk.shape)))
+    assert (
+        np.abs(same.tangent.product(change) - TyreOnFootprint(bent, same.influence).tangent.product(change)).max() == 0
+    )
 
 
 def test_a_longer_push_meets_softer_rubber(monkeypatch: pytest.MonkeyPatch) -> None:

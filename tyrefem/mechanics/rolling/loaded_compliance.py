@@ -97,11 +97,13 @@ class LoadedCompliance(Brief):
     ----------
     tyre : on its footprint. known : forces and motions by family.
     rest : forces are known if what is new in them does less than this share of their work on the inflated tyre.
+    turning : False: no shape turns beside C, and D has all of C_t - C.
     """
 
     tyre: TyreOnFootprint
     known: Mapping[MotionFamily, KnownMotions] = field(default_factory=dict)
     rest: float = REST
+    turning: bool = True
 
     @functools.cached_property
     def weights(self) -> Array:
@@ -178,7 +180,7 @@ class LoadedCompliance(Brief):
 
     def _turns(self, family: MotionFamily) -> bool:
         """True if forces of a family turn the pressed shape."""
-        return family is self._turn.family and self._turn.stiffness > 0
+        return self.turning and family is self._turn.family and self._turn.stiffness > 0
 
     @functools.cached_property
     def _turn(self) -> FootprintTurn:

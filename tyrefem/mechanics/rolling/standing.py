@@ -19,11 +19,13 @@ from tyrefem.mechanics.footprint.compliance import TreadCompliance
 from tyrefem.mechanics.footprint.harmonics import Harmonics
 from tyrefem.mechanics.footprint.natural_frequencies import AMPLITUDE, dynamic_state
 from tyrefem.mechanics.footprint.strain_amplitude import WEIGHTS
-from tyrefem.mechanics.rolling.contact_body import COMPONENTS, ContactBody
-from tyrefem.mechanics.rolling.friction import OPEN, States
+from tyrefem.mechanics.rolling.contact_body import ContactBody
+from tyrefem.mechanics.rolling.friction import States
+from tyrefem.mechanics.rolling.pushed_contact import push_forces, pushed_body
 from tyrefem.mechanics.rolling.rolled import RolledTyre
 from tyrefem.mechanics.rolling.rolling_grid import RollingGrid
 from tyrefem.mechanics.rolling.section_fields import SectionFields
+from tyrefem.mechanics.rolling.stiffened_footprint import StiffenedOnFootprint
 from tyrefem.mechanics.rolling.tread_influence import TreadInfluence
 
 if TYPE_CHECKING:
@@ -68,26 +70,13 @@ def standing_stiffness(body: ContactBody, states: States) -> StandingStiffness:
     return StandingStiffness(float(forces[0, 1]), float(forces[1, 2]))
 
 
-def push_forces(body: ContactBody, states: States) -> Array:
-    """(2, k, 3) forces of the road on the points, N/m, per displacement of the road forward, and to the left."""
-    index = np.flatnonzero(states != OPEN)
-    size = COMPONENTS * len(index)
-    compliance = body.compliance[index][:, :, index].reshape(size, size)
-    pushed = np.zeros((size, 2))
-    pushed[1::COMPONENTS, 0] = pushed[2::COMPONENTS, 1] = 1.0
-    forces = np.zeros((2, len(states), COMPONENTS))
-    forces[:, index] = np.linalg.solve(compliance, pushed).T.reshape(2, -1, COMPONENTS)
-    return forces
-
-
 def as_it_rolls(rolled: RolledTyre) -> StandingStiffness:
-    """Stiffness of the contact of a rolling tyre with the compliance in which it rolls: moduli of the revolution."""
-    grid, axes = rolled.grid, rolled.axes
-    compliance = grid.compliance(axes)
-    if grid.motions is not None:
-        motions, weights = np.einsum("kax,kxn->kan", axes, grid.motions[0]), grid.motions[1]
-        compliance = compliance + np.einsum("kan,nm,lbm->kalb", motions, weights, motions, optimize=True)
-    return standing_stiffness(ContactBody(compliance, grid.upstream, grid.turns(axes)), rolled.contact.states)
+    """Stiffness of the contact of a rolling tyre with the compliance in which it rolls: moduli of the revolution; in
+    large motion that of the loaded tyre."""
+    shape = rolled.grid.shape
+    tyre = None if shape is None or shape.loaded is None else shape.loaded.tyre
+    states = rolled.contact.states
+    return standing_stiffness(pushed_body(rolled.grid, rolled.axes, states, tyre), states)
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,7 +85,8 @@ class StandingTyre(Brief):
 
     A push is small beside the strains of a revolution. Compounds whose cards have ``strain_dependence`` meet it with
     the storage modulus G' of its own strain amplitude, about the loaded shape: c = c_cords + G'(g)/G c_compound
-    (`solid.stiffened`), as natural frequencies do. A static strain beneath hardly changes G' of a small cycle.
+    (`solid.stiffened`), as natural frequencies do. A static strain beneath hardly changes G' of a small cycle. In large
+    motion the footprint yields to the push as `StiffenedOnFootprint`; amplitudes of a push are then without that.
 
     Parameters
     ----------
@@ -155,6 +145,13 @@ class StandingTyre(Brief):
         stiffening = {region: float(law.stiffening(amplitudes[region])) for region, law in self.laws.items()}
         return TreadInfluence(TreadCompliance(Harmonics(dynamic_state(self.pressed.tyre, stiffening))))
 
+    def _on_footprint(self, influence: TreadInfluence) -> StiffenedOnFootprint | None:
+        """The tyre in its footprint in large motion; None: small motion about the inflated tyre."""
+        shape = self.rolled.grid.shape
+        if shape is None or shape.loaded is None:
+            return None
+        return StiffenedOnFootprint(shape.footprint, influence, stiff=influence.tread.harmonics.state)
+
     @functools.cached_property
     def _grids(self) -> Cache[RollingGrid]:
         """Amplitudes of the regions -> the contact's points with the moduli of these amplitudes."""
@@ -166,8 +163,8 @@ class StandingTyre(Brief):
         return self._grids.get(key, lambda: self.rolled.grid.under(self._points(amplitudes)))
 
     def _contact(self, amplitudes: Mapping[str, float]) -> tuple[ContactBody, States]:
-        grid, axes = self._grid(amplitudes), self.rolled.axes
-        return ContactBody(grid.compliance(axes), grid.upstream, grid.turns(axes)), self.rolled.contact.states
+        grid, states = self._grid(amplitudes), self.rolled.contact.states
+        return pushed_body(grid, self.rolled.axes, states, self._on_footprint(grid.influence)), states
 
     def _amplitudes(self, forces: Array, amplitudes: Mapping[str, float]) -> dict[str, float]:
         """Region -> amplitude at which it stores as much as its points under forces (k, 3), N."""

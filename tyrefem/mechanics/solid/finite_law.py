@@ -68,6 +68,15 @@ class StressResponse:
         tangent[element, :, :, point] = (vectors * np.abs(values)[:, None]) @ vectors.swapaxes(-1, -2)
         return replace(self, tangent=tangent)
 
+    def stiffer(self, rings: Rings, gradient: Array, modulus: Array, bulk: Array) -> StressResponse:
+        """The response with a tangent ``modulus`` (6, 6, e, q), Pa, more and the bulk stiffness times ``bulk`` (e,), at
+        gradients (e, 9, q, m); stresses do not change: dP = F dc F' : dF more."""
+        strains = _strain_gradients(_deformation(gradient))
+        c = _points(modulus * rings.weights, 2)[:, :, None]
+        more = (strains.swapaxes(-1, -2) @ (c @ strains)).transpose(0, 3, 4, 1, 2).reshape(self.tangent.shape)
+        tangent = self.tangent + more.astype(self.tangent.dtype)
+        return replace(self, tangent=tangent, bulk=self.bulk * bulk[:, None, None])
+
 
 class FiniteLaw(Protocol):
     """Stress as a function of displacement gradients from a pre-stressed configuration."""
@@ -107,6 +116,17 @@ def _points(tensors: Array, axes: int) -> Array:
 def _components(tensors: Array) -> Array:
     """(e, 9, q, m) of components (e, q, m, 9)."""
     return np.ascontiguousarray(np.moveaxis(tensors, -1, 1))
+
+
+def _strain_gradients(f: Array) -> Array:
+    """(e, q, m, 6, 9) B of dE = B dF at deformations F (3, 3, e, q, m)."""
+    strains = np.zeros((*f.shape[2:], 6, 9))
+    for row, (i, j) in enumerate(PAIRS):
+        for k in range(3):
+            strains[..., row, 3 * k + j] += f[k, i]
+            if i != j:
+                strains[..., row, 3 * k + i] += f[k, j]
+    return strains
 
 
 def _tangent(strains: Array, stiffness: Array, initial: Array) -> Array:
@@ -150,12 +170,7 @@ class GreenLaw:
         stress = _components((_points(f, 2) @ s).reshape(*points, 9))
         if tangent is None:
             return StressResponse(stress, np.zeros(0), np.zeros(0), functions, self._bulk)
-        strains = np.zeros((*points, 6, 9))
-        for row, (i, j) in enumerate(PAIRS):
-            for k in range(3):
-                strains[..., row, 3 * k + j] += f[k, i]
-                if i != j:
-                    strains[..., row, 3 * k + i] += f[k, j]
+        strains = _strain_gradients(f)
         c = _points(self.modulus * self.rings.weights, 2)[:, :, None]
         volume = (f * weights).reshape(9, *points).transpose(1, 0, 2, 3)
         matrix = _tangent(strains, c, s).transpose(0, 3, 4, 1, 2)
