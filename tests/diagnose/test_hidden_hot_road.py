@@ -155,9 +155,11 @@ def test_kept_simulations_belong_to_one_study_and_its_data(case: Case) -> None:
     assert len({key_of(item) for item in (model, other, fewer)}) == 3
     assert key_of(model) == key_of(ForwardModel(tf.study(case.study.file), drives))
     store = ProgressStore(case.kept.with_name("copied"))
-    (store.folder / "left-by-another").mkdir(parents=True)
+    (store.folder / "of-the-user").mkdir(parents=True)
+    assert store.open(other) == 0
+    store.keep("predict", (0, {}), np.zeros(3))
     assert store.open(model) == 0
-    assert list(store.folder.iterdir()) == []
+    assert [place.name for place in store.folder.iterdir()] == ["of-the-user"]
     answer = np.array([1.0, 1 / 3, np.nan])
     store.keep("predict", (0, {}), answer)
     np.testing.assert_array_equal(store.known("predict", (0, {})), answer)

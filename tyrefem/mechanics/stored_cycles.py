@@ -43,6 +43,7 @@ class FootprintNumbers:
     area: float
     rolling_radius: float
     harmonics: int
+    contact_harmonics: int
     error: float
 
 
