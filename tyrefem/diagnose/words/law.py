@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from tyrefem.diagnose.beside.discrepancy import HEAT, NONE
+from tyrefem.diagnose.beside.discrepancy import HEAT, NONE, READINGS
 from tyrefem.diagnose.heat.courses import BEGINS, ENDS, PHASE, RUN
 from tyrefem.diagnose.heat.sources import CLEAR, STATED
 from tyrefem.diagnose.law.places import FILM, FLUX, LOSS, SIDEWALL, UNITS, WHOLE_SURFACES, LawPlace
@@ -118,9 +118,9 @@ def limits(law: PlaceLaw) -> list[str]:
 
 
 def discrepancy_words(d: DiagnosisData) -> list[str]:
-    """A more probable description of the same readings, which the law's intervals leave out."""
+    """A more probable cause of the deviation, which the law's intervals leave out; errors of readings fit any one."""
     leading = d.robustness.models[0] if d.robustness else None
-    if leading is None or leading.name in (NONE, HEAT) or leading.probability < LIKELY:
+    if leading is None or leading.name in (NONE, HEAT, READINGS) or leading.probability < LIKELY:
         return []
     words = f"{leading.words[0].upper()}{leading.words[1:]}"
     return [
