@@ -31,6 +31,7 @@ from tyrefem.diagnose.words.draft_effect import EFFECTS, draft_effects
 from tyrefem.diagnose.words.record import record
 from tyrefem.effects import catalogue, use_effects
 from tyrefem.output import atomic_path
+from tyrefem.plugins.environment import FOLDERS
 from tyrefem.simulation.surroundings import GAS
 
 HIDDEN = Path(__file__).parent / "hidden_laws"
@@ -82,7 +83,7 @@ def measured(folder: Path, case: str, seed: int, *, whole: bool) -> tf.Study:
             columns[f"{sensor} [degC]"] = np.round(computed + NOISE * rng.normal(size=len(times)), 2)
         pd.DataFrame(columns).to_csv(folder / f"{run['run']}.csv", index=False)
         run["table"] = f"{run.pop('run')}.csv"
-    os.environ["TYREFEM_EFFECTS"] = ""
+    os.environ[FOLDERS] = ""
     study = base.replace({"mesh.size": SIZE, "measured": runs, "diagnosis.exclude": sorted({*exclude, *left_out})})
     with atomic_path(folder / "study.toml") as temporary:
         temporary.write_text(tomli_w.dumps(dict(study.data)), encoding="utf-8")
@@ -114,7 +115,7 @@ def case_records(case: str, seed: int, records: Path, *, whole: bool) -> None:
     diagnosed(study, folder, "first")
     if (folder / EFFECTS).exists():
         diagnosed(study, folder, "second", folder / EFFECTS)
-        os.environ["TYREFEM_EFFECTS"] = ""
+        os.environ[FOLDERS] = ""
 
 
 def main() -> None:
