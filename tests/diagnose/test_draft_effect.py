@@ -96,9 +96,6 @@ def test_heat_at_a_station(tmp_path: Path) -> None:
     assert [parameter.name for parameter in effect.parameters()] == [
         "heat", "speed_exponent", "load_exponent", "temperature_rate",
     ]  # fmt: skip
-    # Exponents have the prior of the law's terms: their intervals by these readings would count them twice.
-    assert [parameter.prior.scale for parameter in effect.parameters()[1:]] == [1.0, 1.5, 0.02]
-    assert [parameter.prior.start for parameter in effect.parameters()[1:]] == [1.5, 0.5, -0.02]
     hot = effect(heat="2e4 W/m**3")
     x, T = np.array([[0.06, 0.07], [0.0, 0.0]]), np.array([60.0, 110.0])
     expected = 2e4 * 2**1.5 * 2**0.5 * np.exp([0.0, -1.0]) * np.exp([0.0, -0.5])

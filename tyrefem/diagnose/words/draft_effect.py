@@ -36,8 +36,8 @@ if TYPE_CHECKING:
 
 #: Folder of the draft effects, beside the record.
 EFFECTS = "effects"
-#: Range of an exponent, or of a rate of temperature, about its start in a draft, in prior sd of the law's terms.
-RANGE = 4.0
+#: Least prior sd of an exponent, and of a rate of temperature (1/K), in a draft; range about the start, in prior sd.
+LEAST_SD, LEAST_RATE_SD, RANGE = 0.1, 0.002, 8.0
 #: Term -> name of the parameter, meaning.
 PARAMETERS: Mapping[str, tuple[str, str]] = {
     SPEED: ("speed_exponent", "exponent of speed"),
@@ -88,7 +88,7 @@ def draft_name(place: LawPlace) -> str:
 def draft_source(d: DiagnosisData, name: str) -> str:
     """Python source of the draft effect: its law, amplitude with standard deviation, and what it was inferred from.
 
-    The amplitude is unknown again (prior sd: its size); exponents are shape parameters that begin at their values here.
+    The amplitude is unknown again (prior sd: its size); exponents are shape parameters about their values here.
     """
     assert d.law is not None
     heat, law, place = d.law, d.law.law, d.law.place
@@ -127,7 +127,7 @@ def draft_source(d: DiagnosisData, name: str) -> str:
         *_flags(law, place),
         "\n",
         f'    {amplitude}: Annotated[float, Prior("{unit}", "{meaning}", {size!r}, {low!r}, {high!r})] = 0.0\n',
-        *(_shape(entry, law) for entry in exponents),
+        *(_shape(entry) for entry in exponents),
         "\n",
         _law_method(law, place),
         "\n",
@@ -136,10 +136,10 @@ def draft_source(d: DiagnosisData, name: str) -> str:
     return "".join(parts)
 
 
-def _shape(entry: Exponent, law: PlaceLaw) -> str:
-    """A shape parameter. Its prior is as wide as before the data, which would count twice otherwise."""
+def _shape(entry: Exponent) -> str:
     parameter, meaning = PARAMETERS[entry.name]
-    rate, (_, sd) = entry.name == WARM, law.terms.prior(entry.name)
+    rate = entry.name == WARM
+    sd = max(float(f"{entry.sd:.2g}"), LEAST_RATE_SD if rate else LEAST_SD)
     start = round(entry.mean, 5 if rate else 3)
     unit = "1/delta_degC" if rate else "1"
     limits = f"{round(start - RANGE * sd, 5)!r}, {round(start + RANGE * sd, 5)!r}"
