@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hidden import COARSE_MESH, END, FINER_MESH, HASTY, measure, study
+from hidden import COARSE_MESH, FINER_MESH, HASTY, measure, study
 
 from tyrefem.diagnose.verdicts.verdict import IDENTIFIED, PARTLY, UNEXPLAINED
 from tyrefem.diagnose.words.heat import inside_share
@@ -60,8 +60,7 @@ def test_heat_that_begins_late_is_dated_and_its_draft_effect_is_identified(
     stated = drawn_sources(d)
     assert [source.amount for source in stated] == [source.amount for source in d.missing.over_time.clear]
     strength, spread = by_run(stated[0], d.missing.over_time)
-    # Of the mean over a run the source makes up the share of the time that is left when it begins.
-    assert np.all(np.abs(strength - (1 - 70.0 / END) * stated[0].amount) < 3 * spread)
+    assert np.all(np.abs(strength - stated[0].amount) < 3 * spread)
     # The amended study has the source with its time, and its run explains the readings.
     (effect,) = (entry for entry in d.study.data["effects"] if entry["name"].startswith("missing-"))
     assert float(effect["begins"].split()[0]) == pytest.approx(70.0, abs=8.0)

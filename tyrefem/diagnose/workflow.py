@@ -23,7 +23,6 @@ from tyrefem.diagnose.forward.forward_model import ForwardModel
 from tyrefem.diagnose.forward.multifidelity import Predictions
 from tyrefem.diagnose.forward.strain_law_study import by_law
 from tyrefem.diagnose.forward.worker_queues import number_of
-from tyrefem.diagnose.heat.over_time import heat_where_it_acts
 from tyrefem.diagnose.law.search import HeatLaw, heat_law
 from tyrefem.diagnose.law.signatures import law_signatures
 from tyrefem.diagnose.layout.conformal import read_calibration
@@ -51,8 +50,6 @@ from tyrefem.inputs.study import StudyData
 from tyrefem.requirements import Requirements
 from tyrefem.threads import one_thread
 
-#: Verdicts that leave heat of unknown origin to be told.
-TELLING_HEAT = (UNEXPLAINED, PARTLY)
 #: What a study must have for a diagnosis.
 NEEDS = Requirements("a diagnosis", measured=True, fitted=True)
 
@@ -204,6 +201,7 @@ def _look(
         candidates=candidates,
         null=ranking.null,
         best=ranking.best,
+        missing=ranking.missing,
         before={number: residuals.corrected(number, computed) for number, computed in enumerate(residuals.computed)},
         predictions=predictions.to_dict(),
         seconds=time.perf_counter() - began,
@@ -219,10 +217,9 @@ def _look(
 def _what_follows(
     residuals: Residuals, evaluations: Evaluations, ranking: Ranking, work: SimulationWork, *, law_replaced: bool
 ) -> dict[str, Any]:
-    """What follows from a ranking, as fields of `DiagnosisData`: missing heat where it acts, amended study, law of the
-    missing heat, next experiment, other strain laws."""
+    """What follows from a ranking, as fields of `DiagnosisData`: amended study, law of the missing heat, next
+    experiment, other strain laws."""
     verdict = ranking.judgement.verdict
-    ranking = _with_heat_where_it_acts(residuals, evaluations, ranking, work)
     values, sd, lacking = lacking_unknowns(residuals, ranking)
     change = changes(residuals, values, sd, lacking)
     work.tick("running the amended study")
@@ -237,7 +234,6 @@ def _what_follows(
         work.tick("trying other strain laws")
         trials = law_trials(residuals, evaluations)
     return {
-        "missing": ranking.missing,
         "study": amended(residuals.study, change),
         "changes": change,
         "after": after,
@@ -267,21 +263,9 @@ class _SimulationCounter:
         self.tick(what, self.done, 0)
 
 
-def _with_heat_where_it_acts(
-    residuals: Residuals, evaluations: Evaluations, ranking: Ranking, work: SimulationWork
-) -> Ranking:
-    """The ranking with `heat_where_it_acts`, if the verdict leaves some heat to be told."""
-    heat = ranking.missing.over_time
-    if work.verdict_only or heat is None or ranking.judgement.verdict not in TELLING_HEAT:
-        return ranking
-    work.tick("fitting heat of unknown origin")
-    acting = heat_where_it_acts(residuals, evaluations, heat)
-    return replace(ranking, missing=replace(ranking.missing, over_time=acting))
-
-
 def _law(residuals: Residuals, evaluations: Evaluations, ranking: Ranking, work: SimulationWork) -> HeatLaw | None:
     """The law of the missing heat, if the verdict leaves some."""
-    if ranking.judgement.verdict not in TELLING_HEAT:
+    if ranking.judgement.verdict not in (UNEXPLAINED, PARTLY):
         return None
     work.tick("inferring the law of the missing heat")
     return heat_law(residuals, evaluations, ranking.missing.over_time)

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,12 +14,10 @@ from tyrefem.diagnose.data.residuals import Residuals
 from tyrefem.diagnose.fitting.fits import FittedSet
 from tyrefem.diagnose.fitting.materiality import Movement, largest_change
 from tyrefem.diagnose.forward.evaluations import Evaluations
-from tyrefem.diagnose.heat.acting import about_point, best_point, repeated, simulated_at
 from tyrefem.diagnose.heat.courses import Course, CourseGrid, courses
 from tyrefem.diagnose.heat.evidence import ProjectedData
 from tyrefem.diagnose.heat.sources import Place, UnknownSource, evidence, misfit, place_shares, pursuit, timed
 from tyrefem.diagnose.heat.values import WRITTEN, source_unknown, values_with_sources
-from tyrefem.diagnose.settings import DiagnosisSettings
 from tyrefem.diagnose.unknowns.heat_patches import is_inside, layer_patches, patches, place_of, surface_patches
 from tyrefem.diagnose.unknowns.unknown import Unknown
 from tyrefem.inputs.drive import Drive
@@ -37,8 +35,6 @@ class SourceBasis(Brief):
     data : the data, base numbers and sensors integrated out. entries : places with their courses, on ``grid``.
     unknowns : of the places. grid, coarse : the fitted runs with fine and with few knots.
     tried : every other place, coarse, single layers at the places' stations included, with its unknown.
-    nuisance : unknowns of the data's columns. shares : by entry, (station, where) -> probability of the place.
-    present : values of further unknowns, effects without amplitude.
     """
 
     data: ProjectedData
@@ -47,9 +43,6 @@ class SourceBasis(Brief):
     grid: CourseGrid
     coarse: CourseGrid
     tried: tuple[tuple[Place, Unknown], ...]
-    nuisance: tuple[Unknown, ...]
-    shares: tuple[Mapping[tuple[float, str], float], ...]
-    present: Mapping[Unknown, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,67 +96,26 @@ def heat_over_time(
         at_zero = ProjectedData(origin.data, origin.jacobian[:, :n], origin.design.sd[:n])
         points.insert(0, (at_zero, residuals.unknowns[:n]))
     responses = _Responses(residuals, evaluations, tick)
-    present = {unknown: 1.0 for member in about.members for unknown in member.presence}
-    estimates = [_estimated(residuals, responses, data, unknowns, present) for data, unknowns in points]
+    estimates = [_estimated(residuals, responses, data, unknowns) for data, unknowns in points]
     return max(estimates, key=lambda heat: heat.log_evidence)
 
 
-def heat_where_it_acts(
-    residuals: Residuals, evaluations: Evaluations, heat: HeatOverTime, tick: Callable[[], None] | None = None
-) -> HeatOverTime:
-    """The sources estimated again in linear models about the points where they act: see `repeated`.
-
-    Base numbers and sensors also change the response to a source: a late sensor shows it late, one nearer to it more.
-    Linear models about points without sources leave that out, so time, place and amount would be told too surely.
-    """
-    responses = _Responses(residuals, evaluations, tick)
-
-    def again(current: HeatOverTime) -> tuple[HeatOverTime, float, float] | None:
-        if (basis := current.basis) is None:
-            return None
-        low, high = (np.array([getattr(each, side) for each in basis.nuisance]) for side in ("low", "high"))
-        exact = replace(basis.data, weight=1.0)
-        point = best_point(exact, low, high, basis.entries, basis.grid)
-        there = simulated_at(residuals, evaluations, basis.nuisance, basis.present, basis.unknowns, point)
-        if there is None:
-            return None
-        data = about_point(exact.sd, point, *there, basis.entries, basis.grid)
-        estimates = [
-            _estimated(residuals, responses, data, basis.nuisance, basis.present, like) for like in (None, basis)
-        ]
-        best = max(estimates, key=lambda heat: heat.log_evidence)
-        return best, float(there[0] @ there[0]), point.misfit
-
-    return repeated(heat, again)
-
-
 def _estimated(
-    residuals: Residuals,
-    responses: _Responses,
-    data: ProjectedData,
-    nuisance: Sequence[Unknown],
-    present: Mapping[Unknown, float],
-    like: SourceBasis | None = None,
+    residuals: Residuals, responses: _Responses, data: ProjectedData, nuisance: Sequence[Unknown]
 ) -> HeatOverTime:
-    """The sources in a linear model; ``like``: at the places of other ones, in place of those that explain most."""
     study, settings = residuals.study, residuals.settings
     coarse, fine = (_grid(residuals, count) for count in (settings.coarse_knots, settings.fine_knots))
     tried = (*patches(study, settings), *surface_patches(study, settings))
     places = responses.places(coarse, tried)
-    known = () if like is None else responses.places(coarse, like.unknowns)
-    chosen = _chosen(data, places, known, coarse, settings)
+    chosen = pursuit(data, places, coarse, settings.most_sources, settings.source_gain)
     # What even the free courses leave is an error of the linear model: with less weight it makes no further sources.
     exact, data = data, replace(data, weight=1.0 / max(1.0, misfit(data, chosen) / len(data.data)))
-    chosen = _chosen(data, places, known, coarse, settings)
+    chosen = pursuit(data, places, coarse, settings.most_sources, settings.source_gain)
     shares, refined, layered = [], [], dict[tuple[float, str], Place]()
     for number, (place, _) in enumerate(chosen):
         others = [entry for other, entry in enumerate(chosen) if other != number]
         layers = responses.places(coarse, layer_patches(study, settings, place.station))
         layered |= {(layer.station, layer.where): layer for layer in layers}
-        if like is not None:
-            shares.append(like.shares[known.index(place)])
-            refined.append(place)
-            continue
         options = [option for option in (*places, *layers) if all(option is not other for other, _ in others)]
         share = place_shares(data, options, others, coarse)
         shares.append(share)
@@ -201,21 +153,10 @@ def _estimated(
     unknowns = tuple(unknown for unknown, _, _ in named) if written else ()
     sources.sort(key=lambda source: -abs(source.amount) / source.sd)
     every = [(place, unknown_of[place.station, place.where]) for place in (*places, *layered.values())]
-    basis = SourceBasis(
-        data, tuple(current), of_places, fine, coarse, tuple(every), tuple(nuisance), tuple(shares), present
-    )
+    basis = SourceBasis(data, tuple(current), of_places, fine, coarse, tuple(every))
     return HeatOverTime(
         tuple(sources), fine.knots, fine.names, rolling, cools, log_evidence, values, sd, unknowns, basis
     )
-
-
-def _chosen(
-    data: ProjectedData, places: Sequence[Place], known: Sequence[Place], grid: CourseGrid, settings: DiagnosisSettings
-) -> list[tuple[Place, Course]]:
-    """The sources that explain the data best; those at ``known`` places, if there are any."""
-    if known:
-        return pursuit(data, known, grid, len(known), -math.inf)
-    return pursuit(data, places, grid, settings.most_sources, settings.source_gain)
 
 
 def _grid(residuals: Residuals, count: int) -> CourseGrid:
