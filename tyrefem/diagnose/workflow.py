@@ -23,6 +23,8 @@ from tyrefem.diagnose.forward.forward_model import ForwardModel
 from tyrefem.diagnose.forward.multifidelity import Predictions
 from tyrefem.diagnose.forward.strain_law_study import by_law
 from tyrefem.diagnose.forward.worker_queues import number_of
+from tyrefem.diagnose.heat.acting import where_it_acts, with_times
+from tyrefem.diagnose.heat.over_time import HeatOverTime
 from tyrefem.diagnose.law.search import HeatLaw, heat_law
 from tyrefem.diagnose.law.signatures import law_signatures
 from tyrefem.diagnose.layout.conformal import read_calibration
@@ -201,7 +203,6 @@ def _look(
         candidates=candidates,
         null=ranking.null,
         best=ranking.best,
-        missing=ranking.missing,
         before={number: residuals.corrected(number, computed) for number, computed in enumerate(residuals.computed)},
         predictions=predictions.to_dict(),
         seconds=time.perf_counter() - began,
@@ -217,14 +218,15 @@ def _look(
 def _what_follows(
     residuals: Residuals, evaluations: Evaluations, ranking: Ranking, work: SimulationWork, *, law_replaced: bool
 ) -> dict[str, Any]:
-    """What follows from a ranking, as fields of `DiagnosisData`: amended study, law of the missing heat, next
+    """What follows from a ranking, as fields of `DiagnosisData`: missing heat with its law, amended study, next
     experiment, other strain laws."""
-    verdict = ranking.judgement.verdict
+    verdict, law = ranking.judgement.verdict, None
+    if not work.verdict_only and verdict in (UNEXPLAINED, PARTLY) and ranking.missing.over_time is not None:
+        ranking, law = _with_law(residuals, evaluations, ranking, ranking.missing.over_time, work)
     values, sd, lacking = lacking_unknowns(residuals, ranking)
     change = changes(residuals, values, sd, lacking)
     work.tick("running the amended study")
     after = _after(residuals, evaluations, change if work.rerun else None, values)
-    law = None if work.verdict_only else _law(residuals, evaluations, ranking, work)
     further: Mapping[str, Any] = {}
     if verdict == CONFOUNDED and not work.verdict_only:
         work.tick("ranking next experiments")
@@ -234,6 +236,7 @@ def _what_follows(
         work.tick("trying other strain laws")
         trials = law_trials(residuals, evaluations)
     return {
+        "missing": ranking.missing,
         "study": amended(residuals.study, change),
         "changes": change,
         "after": after,
@@ -263,12 +266,17 @@ class _SimulationCounter:
         self.tick(what, self.done, 0)
 
 
-def _law(residuals: Residuals, evaluations: Evaluations, ranking: Ranking, work: SimulationWork) -> HeatLaw | None:
-    """The law of the missing heat, if the verdict leaves some."""
-    if ranking.judgement.verdict not in (UNEXPLAINED, PARTLY):
-        return None
+def _with_law(
+    residuals: Residuals, evaluations: Evaluations, ranking: Ranking, heat: HeatOverTime, work: SimulationWork
+) -> tuple[Ranking, HeatLaw | None]:
+    """The law of the missing heat, and the ranking with times of its sources from where they act."""
     work.tick("inferring the law of the missing heat")
-    return heat_law(residuals, evaluations, ranking.missing.over_time)
+    law = heat_law(residuals, evaluations, heat)
+    acting = where_it_acts(residuals, evaluations, heat)
+    if acting is None:
+        return ranking, law
+    missing = replace(ranking.missing, over_time=with_times(residuals, heat, acting))
+    return replace(ranking, missing=missing), None if law is None else law.dated(acting.data)
 
 
 def _after(

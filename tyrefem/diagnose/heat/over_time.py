@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -35,6 +35,7 @@ class SourceBasis(Brief):
     data : the data, base numbers and sensors integrated out. entries : places with their courses, on ``grid``.
     unknowns : of the places. grid, coarse : the fitted runs with fine and with few knots.
     tried : every other place, coarse, single layers at the places' stations included, with its unknown.
+    nuisance : unknowns of the columns of the data's Jacobian. present : values of the unknowns of effects beside them.
     """
 
     data: ProjectedData
@@ -43,6 +44,8 @@ class SourceBasis(Brief):
     grid: CourseGrid
     coarse: CourseGrid
     tried: tuple[tuple[Place, Unknown], ...]
+    nuisance: tuple[Unknown, ...]
+    present: Mapping[Unknown, float]
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,12 +99,17 @@ def heat_over_time(
         at_zero = ProjectedData(origin.data, origin.jacobian[:, :n], origin.design.sd[:n])
         points.insert(0, (at_zero, residuals.unknowns[:n]))
     responses = _Responses(residuals, evaluations, tick)
-    estimates = [_estimated(residuals, responses, data, unknowns) for data, unknowns in points]
+    present = {unknown: 1.0 for member in about.members for unknown in member.presence}
+    estimates = [_estimated(residuals, responses, data, unknowns, present) for data, unknowns in points]
     return max(estimates, key=lambda heat: heat.log_evidence)
 
 
 def _estimated(
-    residuals: Residuals, responses: _Responses, data: ProjectedData, nuisance: Sequence[Unknown]
+    residuals: Residuals,
+    responses: _Responses,
+    data: ProjectedData,
+    nuisance: Sequence[Unknown],
+    present: Mapping[Unknown, float],
 ) -> HeatOverTime:
     study, settings = residuals.study, residuals.settings
     coarse, fine = (_grid(residuals, count) for count in (settings.coarse_knots, settings.fine_knots))
@@ -153,7 +161,7 @@ def _estimated(
     unknowns = tuple(unknown for unknown, _, _ in named) if written else ()
     sources.sort(key=lambda source: -abs(source.amount) / source.sd)
     every = [(place, unknown_of[place.station, place.where]) for place in (*places, *layered.values())]
-    basis = SourceBasis(data, tuple(current), of_places, fine, coarse, tuple(every))
+    basis = SourceBasis(data, tuple(current), of_places, fine, coarse, tuple(every), tuple(nuisance), present)
     return HeatOverTime(
         tuple(sources), fine.knots, fine.names, rolling, cools, log_evidence, values, sd, unknowns, basis
     )

@@ -183,6 +183,30 @@ def timed(
     return source, best
 
 
+@dataclass(frozen=True, eq=False)
+class DatedSource(Brief):
+    """A source whose course switches: the course of the best time, mean and sd of the time (s), amount and its sd."""
+
+    course: Course
+    time: float
+    time_sd: float
+    amount: float
+    sd: float
+
+
+def dated(
+    data: ProjectedData, place: Place, kind: str, others: Sequence[tuple[Place, Course]], grid: CourseGrid
+) -> DatedSource:
+    """The time and amount of a source with a course of a known kind, beside other sources."""
+    tried = [
+        (evidence(data, [*others, (place, course)]), course)
+        for course in told_courses(place, grid)
+        if course.kind == kind
+    ]
+    _, best = max(tried, key=lambda entry: entry[0])
+    return DatedSource(best, *_switch(tried), *_amount(data, place, best, others))
+
+
 def told_courses(place: Place, grid: CourseGrid) -> Iterator[Course]:
     """The courses that readings can tell from a constant source at a place, and the constant one.
 

@@ -65,7 +65,7 @@ class PlaceLaw(Brief):
     exponents : of all terms that vary, those of the best law first. hardly, together : see `LawTerms`.
     switch_probabilities : by kind. time, time_sd : of the switch, s; NaN without one.
     alternatives : other laws within `NEAR`, with ln evidence below the best. log_evidence : of the data, all laws.
-    terms : see `LawTerms`.
+    terms : see `LawTerms`. inflation : of the readings' variance for the choice, see `place_law`.
     """
 
     fit: LawFit
@@ -78,6 +78,7 @@ class PlaceLaw(Brief):
     alternatives: tuple[tuple[LawFit, float], ...]
     log_evidence: float
     terms: LawTerms
+    inflation: float = 1.0
 
     @property
     def clear(self) -> bool:
@@ -102,6 +103,22 @@ class PlaceLaw(Brief):
     def strength(self) -> Array:
         """(n,) at fine times, with its amplitude."""
         return self.amplitude * self.fit.strength(dict(self.terms.features))
+
+    def dated(self, data: LawData, variables: DriveVariables, *, inside: bool) -> PlaceLaw:
+        """The same law with switch and amplitude by other data, those about a point where the source acts.
+
+        This law if it has no time, or if its amplitude is not clear there.
+        """
+        if math.isnan(self.time):
+            return self
+        data, features = data.over(self.inflation), dict(self.terms.features)
+        of_kind = [each for each in switches(variables, inside=inside) if each.kind == self.fit.switch.kind]
+        best = of_kind[int(_over_times(data, features, self.fit, of_kind).argmax())]
+        time, time_sd = _time(data, features, self.fit, of_kind)
+        fit = replace(self.fit, switch=best)
+        amplitude, sd = _amplitude(data, features, fit)
+        new = replace(self, fit=fit, amplitude=amplitude, sd=sd, time=time, time_sd=time_sd)
+        return new if new.clear else self
 
 
 def place_law(
@@ -130,8 +147,9 @@ def place_law(
         for entry in chosen.exponents
     )  # fmt: skip
     return replace(
-        chosen, fit=fit, amplitude=amplitude, sd=sd, exponents=exponents, log_evidence=law.log_evidence, terms=terms
-    )
+        chosen, fit=fit, amplitude=amplitude, sd=sd, exponents=exponents, log_evidence=law.log_evidence, terms=terms,
+        inflation=max(inflation, 1.0),
+    )  # fmt: skip
 
 
 def _chosen_law(data: LawData, variables: DriveVariables, terms: LawTerms, *, inside: bool) -> PlaceLaw:

@@ -51,11 +51,11 @@ WORSE, MOSTLY = 3.0, 0.9
 
 @dataclass(frozen=True, eq=False)
 class RankedPlace(Brief):
-    """A place with its best law, beside ``beside`` further sources; ``below``: ln evidence below the best place."""
+    """A place with its best law, beside further sources ``others``; ``below``: ln evidence below the best place."""
 
     place: LawPlace
     law: PlaceLaw
-    beside: int
+    others: tuple[tuple[Place, Course], ...]
     below: float
     columns: Array
     data: ProjectedData
@@ -94,6 +94,16 @@ class HeatLaw(Brief):
     def holds(self) -> bool:
         """Whether one law with a clear amplitude describes the heat in all fitted runs."""
         return self.law.clear and (self.lead > -WORSE or self.share >= MOSTLY)
+
+    def dated(self, data: ProjectedData) -> HeatLaw:
+        """The laws with their switches by a linear model about the point where the sources act: ``data``."""
+        ranking = []
+        for entry in self.ranking:
+            place = entry.place
+            of_place = law_data(_beside(data, entry.others), entry.columns, place.sd, self.variables.hats)
+            law = entry.law.dated(of_place, self.variables, inside=place.inside)
+            ranking.append(replace(entry, law=law))
+        return replace(self, ranking=tuple(ranking))
 
 
 def heat_law(
@@ -140,7 +150,7 @@ def heat_law(
         of_option = law_data(data, option.columns, place.sd, variables.hats)
         scatter = SeriesScatter(data, option.columns, series)
         law = place_law(of_option, variables, terms, inside=place.inside, scatter=scatter)
-        entry = RankedPlace(place, law, len(option.others), 0.0, option.columns, data)
+        entry = RankedPlace(place, law, option.others, 0.0, option.columns, data)
         places = max(len(place.parts), 1)
         ranked.append((law.log_evidence - places * of_place - len(option.others) * of_other, entry))
     top, none = max(score for score, _ in ranked), basis.data.log_evidence
@@ -149,7 +159,7 @@ def heat_law(
     def share(score: float) -> float:
         return (score - none) / max(by_run - none, 1e-9)
 
-    ranked.sort(key=lambda scored: (bool(scored[1].beside) or share(scored[0]) < MOSTLY, -scored[0]))
+    ranked.sort(key=lambda scored: (bool(scored[1].others) or share(scored[0]) < MOSTLY, -scored[0]))
     first = ranked[0][0]
     ranking = tuple(replace(entry, below=top - score) for score, entry in ranked)
     return HeatLaw(ranking, variables, first - by_run, share(first), basis)

@@ -81,6 +81,6 @@ def _place(d: DiagnosisData, entry: RankedPlace) -> dict[str, Any]:
         "station_m": entry.place.station,
         f"amplitude_{unit}": entry.law.amplitude,
         f"amplitude_sd_{unit}": entry.law.sd,
-        "other_sources": entry.beside,
+        "other_sources": len(entry.others),
         "log_evidence_below_best": entry.below,
     }
