@@ -102,6 +102,18 @@ def test_every_relative_link_leads_somewhere(page: Path) -> None:
     assert broken == []
 
 
+def linked_pages(page: Path) -> set[Path]:
+    targets = (target.partition("#")[0] for target in LINK.findall(prose(page)))
+    return {(page.parent / target).resolve() for target in targets if target.endswith(".md")}
+
+
+def test_every_page_is_two_clicks_from_the_readme() -> None:
+    first = linked_pages(ROOT / "README.md")
+    assert {relative(page) for page in PAGES if page.parent.name == "docs" and page not in first} == set()
+    reached = first.union(*(linked_pages(page) for page in first & set(PAGES)))
+    assert {relative(page) for page in PAGES if page not in reached} == set()
+
+
 @pytest.mark.parametrize("page", TEXTS, ids=lambda page: page.relative_to(ROOT).as_posix())
 def test_every_command_in_a_shell_block_exists(page: Path) -> None:
     for words in shell_commands(page):
