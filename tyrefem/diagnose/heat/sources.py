@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from tyrefem.brief import Brief
 from tyrefem.diagnose.fitting.materiality import Movement
 from tyrefem.diagnose.heat.courses import CONSTANT, CORRELATED, FREE, PHASE, Course, CourseGrid, constant, courses, free
-from tyrefem.diagnose.heat.evidence import HeatData, ProjectedData, log_mean_exp, shares
+from tyrefem.diagnose.heat.evidence import HeatData, ProjectedData, log_mean_exp, mean_time, shares
 from tyrefem.diagnose.unknowns.heat_patches import ALL_LAYERS
 
 Array = NDArray[np.float64]
@@ -166,7 +166,8 @@ def timed(
     kinds = shares({kind: log_mean_exp([gain for gain, _ in tried]) for kind, tried in by_kind.items()})
     kind = next(iter(kinds))
     _, best = max(by_kind[kind], key=lambda entry: entry[0])
-    time, time_sd = _switch(by_kind[kind])
+    gains, tried_courses = zip(*by_kind[kind], strict=True)
+    time, time_sd = mean_time([course.time for course in tried_courses], np.array(gains))
     amount, sd = _amount(data, place, best, others)
     _, loosest = max(by_kind[FREE], key=lambda entry: entry[0])
     strength, strength_sd = _over_time(data, place, loosest, others, grid)
@@ -224,18 +225,6 @@ def told_courses(place: Place, grid: CourseGrid) -> Iterator[Course]:
             if min(np.linalg.norm(response), np.linalg.norm(response - plain)) < SAME * np.linalg.norm(plain):
                 continue
         yield course
-
-
-def _switch(tried: Sequence[tuple[float, Course]]) -> tuple[float, float]:
-    """Mean and standard deviation of the time of a switch, s; at least the share of the spacing between two times."""
-    times = np.array([math.nan if course.time is None else course.time for _, course in tried])
-    if np.isnan(times).any():
-        return math.nan, math.nan
-    weights = np.exp(np.array([gain for gain, _ in tried]) - max(gain for gain, _ in tried))
-    weights /= weights.sum()
-    mean = float(weights @ times)
-    spacing = float(np.diff(times).min()) if len(times) > 1 else 0.0
-    return mean, math.sqrt(float(weights @ (times - mean) ** 2) + spacing**2 / 12)
 
 
 def _amount(

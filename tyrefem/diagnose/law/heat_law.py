@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
-from tyrefem.diagnose.heat.evidence import log_mean_exp, shares
+from tyrefem.diagnose.heat.evidence import log_mean_exp, mean_time, shares
 from tyrefem.diagnose.law.evidence import LawData, LawFit, fitted_law
 from tyrefem.diagnose.law.scatter import SeriesScatter
 from tyrefem.diagnose.law.terms import (
@@ -186,7 +186,8 @@ def _chosen_law(data: LawData, variables: DriveVariables, terms: LawTerms, *, in
             scored.append((fit.log_evidence + prior + spread, fit))
     scored.sort(key=lambda entry: -entry[0])
     top, chosen_fit = scored[0]
-    time, time_sd = _time(data, features, chosen_fit, by_kind[chosen_fit.switch.kind])
+    of_kind = by_kind[chosen_fit.switch.kind]
+    time, time_sd = mean_time([switch.time for switch in of_kind], _over_times(data, features, chosen_fit, of_kind))
     logs = {number: score for number, (score, _) in enumerate(scored)}
     chances = shares(logs)
     kinds: dict[str, float] = {}
@@ -248,19 +249,6 @@ def _time_share(data: LawData, features: Mapping[str, Array], fit: LawFit, of_ki
         return 0.0
     gains = _over_times(data, features, fit, of_kind)
     return log_mean_exp(gains) - data.gain(fit.strength(dict(features)))
-
-
-def _time(data: LawData, features: Mapping[str, Array], fit: LawFit, of_kind: Sequence[Switch]) -> tuple[float, float]:
-    """Mean and standard deviation of the time of a switch, s; NaN without one."""
-    times = np.array([math.nan if switch.time is None else switch.time for switch in of_kind])
-    if np.isnan(times).any():
-        return math.nan, math.nan
-    gains = _over_times(data, features, fit, of_kind)
-    weights = np.exp(gains - gains.max())
-    weights /= weights.sum()
-    mean = float(weights @ times)
-    spacing = float(np.diff(times).min()) if len(times) > 1 else 0.0
-    return mean, math.sqrt(float(weights @ (times - mean) ** 2) + spacing**2 / 12)
 
 
 def _amplitude(data: LawData, features: Mapping[str, Array], fit: LawFit) -> tuple[float, float]:
