@@ -111,7 +111,7 @@ class Step:
             V = State(U.u + W.u, U.g + W.g)
             G, Gg, P = b.remainder(ti, U)
             if b.variable_capacity:
-                rate = self._rate(ti, U, G, b.B @ U.g, max(ti - (later - start), first), later - start)
+                rate = self._rate(U, G, b.B @ U.g, max(ti - (later - start), first), later - start)
                 ru = b.M @ rate - b.S @ W.u + b.B @ W.g
             else:
                 ru = G - b.S @ V.u
@@ -147,7 +147,7 @@ class Step:
             error = max(error, float(np.max(np.abs(h * ((WEIGHT - EMBEDDED) @ kg))[b.rated])))
         return error if np.isfinite(error) else np.inf
 
-    def _rate(self, t: float, U: State, G: Array, border: Array, before: float, dt: float) -> Array:
+    def _rate(self, U: State, G: Array, border: Array, before: float, dt: float) -> Array:
         """du/dt with the exact M(U), by conjugate gradients scaled with the diagonal."""
         b = self.balance
         M, free, fixed = b.ops.matrix(b.mass(U.u)), b.fixed.free, b.fixed.dofs

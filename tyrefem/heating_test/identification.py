@@ -140,7 +140,7 @@ def _identified(card: RigCard, file: Path | None, fitter: Fitter, linear: bool) 
             if selection.chosen in tried or len(tried) == 3:
                 break
         rough, chosen = False, selection.chosen
-    return _result(card, file, fitter.tests, fit, selection, every, keep)
+    return _result(card, file, fitter.tests, fit, selection, keep)
 
 
 def _weighed(fitter: Fitter, every: Parameters, x: Array, fit: RigFit, floor: float) -> tuple[Noise, Selection]:
@@ -157,7 +157,6 @@ def _result(
     tests: tuple[HeatingTest, ...],
     fit: RigFit,
     selection: Selection,
-    every: Parameters,
     keep: Array,
 ) -> IdentificationData:
     """The result, with intervals from the spread of the combinations and the fit's distance from their mean."""

@@ -92,7 +92,7 @@ class GaussPoints:
 @dataclass(frozen=True, eq=False)
 class PointEnergies:
     """A strain cycle as energies at Gauss points: ``densities`` (orders, n_elements, n_points) U, J/m3, by
-    `strain.ORDERS`. Each of the ``zones`` is a whole region. ``friction``: of the tread's rings, if it rolls with
+    `ORDERS`. Each of the ``zones`` is a whole region. ``friction``: of the tread's rings, if it rolls with
     friction."""
 
     zones: tuple[Zone, ...]
@@ -110,7 +110,7 @@ class PointEnergies:
         return self.points.interpolate(self.density, zone, points)
 
     def spectrum(self, zone: str, points: Array) -> Array:
-        """(orders, n) U, J/m3, at points (2, n) by `strain.ORDERS`."""
+        """(orders, n) U, J/m3, at points (2, n) by `ORDERS`."""
         return self.points.interpolate(self.densities, zone, points)
 
     def interpolated(self, others: Sequence[tuple[PointEnergies, float]]) -> PointEnergies:
@@ -186,7 +186,7 @@ class FiniteElements:
 
     @functools.cached_property
     def densities(self) -> Array:
-        """(orders, n_elements, n_points) U, J/m3, at the Gauss points of the mechanical mesh, by `strain.ORDERS`."""
+        """(orders, n_elements, n_points) U, J/m3, at the Gauss points of the mechanical mesh, by `ORDERS`."""
         if self.footprint is None:
             return np.zeros((1, *self.tyre.body.rings.weights.shape))
         from tyrefem.mechanics.footprint.strain_amplitude import StrainAmplitude
@@ -231,7 +231,7 @@ class FiniteElements:
         return self.energies.energy_density(zone, points)
 
     def spectrum(self, zone: str, points: Array) -> Array:
-        """(orders, n) U, J/m3, at points (2, n) by `strain.ORDERS`."""
+        """(orders, n) U, J/m3, at points (2, n) by `ORDERS`."""
         return self.energies.spectrum(zone, points)
 
 

@@ -92,7 +92,7 @@ class StoredCycle(Brief):
         return self.energies.energy_density(zone, points)
 
     def spectrum(self, zone: str, points: Array) -> Array:
-        """(orders, n) U, J/m3, at points (2, n) by `strain.ORDERS`."""
+        """(orders, n) U, J/m3, at points (2, n) by `strain_cycle.ORDERS`."""
         return self.energies.spectrum(zone, points)
 
     def solve(self) -> StrainCycle:

@@ -86,7 +86,7 @@ def _parse_text(value: str, unit: str) -> float:
 
 def _parse(value: object, unit: str) -> float:
     wanted = f"a quantity like {_EXAMPLES[unit]}" if unit in _EXAMPLES else f"a quantity in {unit}"
-    magnitude, text = _split(value, unit, wanted)
+    magnitude, text = _split(value, wanted)
     if not math.isfinite(magnitude):
         raise InputError(f"{value!r} is not a finite number; expected {wanted}")
     if not text:
@@ -125,7 +125,7 @@ def _usual(magnitude: float, text: str, unit: str) -> float | None:
     return offset + factor * magnitude
 
 
-def _split(value: object, unit: str, wanted: str) -> tuple[float, str]:
+def _split(value: object, wanted: str) -> tuple[float, str]:
     if isinstance(value, bool) or value is None:
         raise InputError(f"{value!r} is not {wanted}")
     if isinstance(value, int | float):

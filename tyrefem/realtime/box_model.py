@@ -284,7 +284,7 @@ def check_explored(plan: Plan, tolerance: float) -> None:
 
 
 def limited_answers(study: StudyData) -> list[str]:
-    """Names of the answers that a limit may have: those of `SettingSolution.answers`.
+    """Names of the answers that a limit may have: those of `setting_solution`.
 
     >>> import tyrefem
     >>> limited_answers(tyrefem.study("nasa-22x5.5-8pr"))[:3]

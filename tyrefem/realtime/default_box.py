@@ -63,13 +63,13 @@ def _drive(study: StudyData) -> dict[str, Any]:
             if quantity in phase
         }
         for key, value in keys.items():
-            span = _span(study, key, quantity, value)
+            span = _span(study, quantity, value)
             if span is not None:
                 box[key] = span
     return box
 
 
-def _span(study: StudyData, key: str, quantity: str, value: Any) -> dict[str, str] | None:
+def _span(study: StudyData, quantity: str, value: Any) -> dict[str, str] | None:
     """Range about a written quantity; None for ramps, and for speeds and loads of nothing."""
     measured = [
         run

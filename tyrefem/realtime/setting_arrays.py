@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.inputs.study import StudyData
 from tyrefem.realtime.drive_inputs import DriveInputs
 from tyrefem.realtime.export import arrays_of, rotation
 from tyrefem.realtime.number_factors import NumberFactors
@@ -65,7 +64,7 @@ def setting_arrays(
         ),
         "exchange_rows": whole * balance.exchanges.rows @ T,
         "exchange_areas": whole * balance.exchanges.areas * balance.exchanges.given,
-        "zone_power": whole * _by_region(model, study, tyre),
+        "zone_power": whole * _by_region(model, tyre),
         "speeds": tables.axes["speed"],
         "durations": inputs.durations,
         "input_constant": inputs.constant,
@@ -118,7 +117,7 @@ def heated_regions(model: ReducedModel, tyre: Any) -> list[str]:
     return list(dict.fromkeys(tyre.region(zone) for zone in model.zones))
 
 
-def _by_region(model: ReducedModel, study: StudyData, tyre: Any) -> Array:
+def _by_region(model: ReducedModel, tyre: Any) -> Array:
     """(n_regions, n_samples) power of every region per heat source at the samples."""
     regions = heated_regions(model, tyre)
     rows = np.zeros((len(regions), model.power.shape[1]))

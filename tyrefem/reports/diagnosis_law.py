@@ -52,8 +52,8 @@ def law_block(d: DiagnosisData) -> Markup:
     template = Environment(autoescape=True).from_string(_TEMPLATE)
     drafts = [f"{EFFECTS}/{name}" for name in draft_effects(d)]
     first = leading_signatures(d.signatures)
-    rows = [_row(d, row) for row in first]
-    others = [_row(d, row) for row in d.signatures if row not in first]
+    rows = [_row(row) for row in first]
+    others = [_row(row) for row in d.signatures if row not in first]
     return Markup(template.render(sentences=law_words(d), rows=rows, others=others, drafts=drafts, folder=EFFECTS))
 
 
@@ -67,7 +67,7 @@ def leading_signatures(signatures: Sequence[LawSignature]) -> list[LawSignature]
     return [row for row in signatures if not row.effect or row in effects]
 
 
-def _row(d: DiagnosisData, row: LawSignature) -> dict[str, str]:
+def _row(row: LawSignature) -> dict[str, str]:
     exponents = {
         name: f"{row.exponents[name]:z.1f}" if name in row.exponents else "" for name in (SPEED, LOAD, PRESSURE)
     }

@@ -105,11 +105,11 @@ def _missing_map(d: DiagnosisData) -> Figure:
         x, y = (float(part) for part in millimetres(section.place(source.station, depth)))
         labels.append(Label(text, abs(x), y))
     drawn.beside(sorted(labels, key=lambda label: -label.y), 1.0)
-    title(drawn.figure, "Heat of unknown origin", _map_words(d, sources, inside and through))
+    title(drawn.figure, "Heat of unknown origin", _map_words(sources, inside and through))
     return drawn.figure
 
 
-def _map_words(d: DiagnosisData, sources: tuple[UnknownSource, ...], both: bool) -> str:
+def _map_words(sources: tuple[UnknownSource, ...], both: bool) -> str:
     split = "; left: inside, right: through a surface" if both else ""
     if not sources:
         return f"mean over the fitted runs{split}"

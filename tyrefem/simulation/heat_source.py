@@ -58,7 +58,7 @@ class HeatSource:
         return total
 
     def spectrum(self, x: Array, t: float) -> Array:
-        """(orders, n) U, J/m3, at nodes and a time, by periods per revolution: the first of `strain.ORDERS`."""
+        """(orders, n) U, J/m3, at nodes and a time, by periods per revolution: the first of `ORDERS`."""
         self._meet(x)
         parts = []
         for phase, knot, weight in self.schedule.weights(t):

@@ -88,7 +88,7 @@ def cases(study: StudyData, count: int, seed: int) -> list[BlindCase]:
     result = []
     for number in range(count):
         rng = np.random.default_rng([seed, number + 1])
-        kind = _kind(number, count)
+        kind = _kind(number)
         if kind == "two" and len(physical) < 2:
             kind = "one"
         base = (*base_unknowns(study), *sensor_unknowns(study, set(study.sensors)))
@@ -118,7 +118,7 @@ def cases(study: StudyData, count: int, seed: int) -> list[BlindCase]:
     return result
 
 
-def _kind(number: int, count: int) -> str:
+def _kind(number: int) -> str:
     """The kind of a case; the golden ratio spreads the kinds evenly over the numbers."""
     place, edge = (number * 0.6180339887) % 1.0, 0.0
     for kind, share in KINDS.items():

@@ -88,7 +88,7 @@ def heat_over_time(
     1. Every place of a few coarse knots in time is tried: heat in all layers, and flux through the outer surface, the
        inner surface and from the rim. The best are added one by one.
     2. At the station of each source, single layers compete too.
-    3. Each source gets fine knots; the courses of `heat_courses` compete by evidence.
+    3. Each source gets fine knots; the courses of `heat.courses` compete by evidence.
     """
     of_fit = np.array([unknown.sd for unknown in about.unknowns])
     points: list[tuple[ProjectedData, Sequence[Unknown]]] = [

@@ -83,7 +83,7 @@ def law_signatures(residuals: Residuals, heat: HeatLaw, candidates: Sequence[Can
         unknowns = (*candidate.amplitudes, *candidate.presence)
         J = origin.jacobian[:, origin.design.columns(unknowns)] * np.array([each.sd for each in unknowns])
         if float(np.trace(J.T @ data.times(J))) / 2 > LEAST:
-            station, where, exponents = _of_response(J[:, 0], heat, data)
+            station, where, exponents = _of_response(J[:, 0], heat)
             rows.append(
                 LawSignature(candidate.key, True, _likeness(columns, J, data), math.nan, station, where, exponents)
             )
@@ -98,7 +98,7 @@ def _likeness(response: Array, J: Array, data: ProjectedData) -> float:
     return min(max(made_up / float(response @ data.times(response)), 0.0), 1.0)
 
 
-def _of_response(response: Array, heat: HeatLaw, data: ProjectedData) -> tuple[float, str, dict[str, float]]:
+def _of_response(response: Array, heat: HeatLaw) -> tuple[float, str, dict[str, float]]:
     """Place and exponents of the constant heat that resembles a response (n,) best."""
     basis = heat.basis
     noiseless = replace(basis.data, data=response)

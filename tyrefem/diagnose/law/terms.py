@@ -172,7 +172,7 @@ def structures(terms: LawTerms) -> dict[tuple[str, ...], float]:
 
 @dataclass(frozen=True, eq=False)
 class Switch(Brief):
-    """When a law acts: ``kind`` (a course's name of `heat_courses`, or one of this module), ``time`` s, ``on`` (n,)."""
+    """When a law acts: ``kind`` (a course's name of `heat.courses`, or one of this module), ``time`` s, ``on`` (n,)."""
 
     kind: str
     on: Array

@@ -210,7 +210,7 @@ def inputs(study: StudyData) -> Hashable:
     """All inputs of a study's finite elements except load, pressure and road: equal for equal tyres.
 
     These are the section, the choice of mesh with its file's content, the choice of moduli, and the card values that
-    `strain.reads` names.
+    `materials.reads` names.
     """
     choice = study.card.mesh
     content = ""

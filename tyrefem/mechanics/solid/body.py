@@ -197,7 +197,7 @@ class Body(Brief):
         """(2 n_nodes,) internal forces minus those of ``pressure`` (Pa), flanges and spin, N per radian."""
         f = self.deformation(displacement)
         stress, _, _ = self._stresses(f)
-        strains, _ = self._strains(displacement, f)
+        strains, _ = self._strains(f)
         local = np.einsum("eqcd,ceq->ed", strains, stress[:4] * self.rings.weights, optimize=True)
         forces = np.zeros(2 * self.rings.n_nodes)
         np.add.at(forces, self._dofs, local)
@@ -221,7 +221,7 @@ class Body(Brief):
         f = self.deformation(displacement)
         stress, p, volume = self._stresses(f)
         tangent = self._tangent(f, p, volume)[0][:4, :4] * self.rings.weights
-        strains, gradients = self._strains(displacement, f)
+        strains, gradients = self._strains(f)
         n_elements, points, _, size = strains.shape
         flat = strains.reshape(n_elements, points * 4, size).transpose(0, 2, 1)
         matrix = flat @ (np.moveaxis(tangent, (0, 1), (-2, -1)) @ strains).reshape(n_elements, points * 4, size)
@@ -261,7 +261,7 @@ class Body(Brief):
         ones = over(outer(UNIT, UNIT) - 2 * SYMMETRIC_UNIT, p.shape)
         return tangent + p * volume * ones, dissipating
 
-    def _strains(self, displacement: Array, f: Array) -> tuple[Array, Array]:
+    def _strains(self, f: Array) -> tuple[Array, Array]:
         """Matrix (n_elements, n_points, 4, 18) from displacements to e_rr, e_zz, e_tt, g_rz; gradients as deformed."""
         plane = f[0, 0] * f[1, 1] - f[0, 1] * f[1, 0]
         by_r, by_z = self.rings.gradients

@@ -154,7 +154,7 @@ def _newton(body: Body, start: Array, pressure: float, choice: NewtonChoice) -> 
     history = [float(np.linalg.norm(residual[free])) / size]
     while history[-1] > choice.tolerance:
         if len(history) > choice.iterations or not np.isfinite(history[-1]):
-            raise _StuckError(_worst(body, now, residual))
+            raise _StuckError(_worst(body, residual))
         matrix = body.stiffness(now, pressure)[free][:, free]
         change = np.zeros(now.shape)
         try:
@@ -208,7 +208,7 @@ def _folded(body: Body, displacement: Array) -> str:
     )
 
 
-def _worst(body: Body, displacement: Array, residual: Array) -> str:
+def _worst(body: Body, residual: Array) -> str:
     size = np.zeros(len(residual))
     size[body.free] = residual[body.free]
     node = int(np.hypot(*size.reshape(-1, 2).T).argmax())
