@@ -13,6 +13,7 @@ from tyrefem.interruption import interruption_delayed
 from tyrefem.output import atomic_path, versions, write_json
 from tyrefem.reports.figures.style import FONT, TITLE, add_axes, figure, line_style, plain, png, short, tidy, title
 from tyrefem.reports.run_files import run_files, write_tables
+from tyrefem.reports.template import rendered
 from tyrefem.reports.vtk import file_names
 from tyrefem.sweep.campaign import CampaignData, row
 
@@ -102,15 +103,10 @@ def write_campaign_report(campaign: CampaignData, table: pd.DataFrame, path: str
     ------
     InputError : the file cannot be written.
     """
-    from jinja2 import Environment, FileSystemLoader, StrictUndefined
-
-    environment = Environment(
-        loader=FileSystemLoader(Path(__file__).parent), autoescape=True, undefined=StrictUndefined,
-        trim_blocks=True, lstrip_blocks=True,
-    )  # fmt: skip
     path, done = Path(path), finished(table)
     failed = table[table["failure"] != ""]
-    page = environment.get_template("campaign.html").render(
+    page = rendered(
+        "campaign.html",
         campaign=campaign,
         summary=_one_line(campaign, done),
         rows=done.to_dict("records"),

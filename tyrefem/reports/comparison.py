@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 import io
 import json
 import math
@@ -17,6 +16,7 @@ from tyrefem.compare.history import ALL
 from tyrefem.compare.stored import CURVES, RECORD, RESIDUALS, TABLE, curves_table
 from tyrefem.output import atomic_folder
 from tyrefem.reports.figures.phases import Phase, draw_phases, make_room
+from tyrefem.reports.template import embedded, rendered
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -218,20 +218,19 @@ def save(comparison: ComparisonData, folder: str | Path) -> Path:
 
 def page(comparison: ComparisonData, images: Mapping[str, bytes]) -> str:
     """The page's HTML; ``images``: file name -> PNG, from `tyrefem.reports.comparison.pictures`."""
-    from jinja2 import Environment, FileSystemLoader, StrictUndefined
-
-    environment = Environment(
-        loader=FileSystemLoader(Path(__file__).parent), autoescape=True, undefined=StrictUndefined,
-        trim_blocks=True, lstrip_blocks=True,
-    )  # fmt: skip
     records = comparison.table.to_dict(orient="records")
-    embedded = {name: base64.b64encode(png).decode("ascii") for name, png in images.items()}
     whole = [record for record in records if record["phase"] == ALL]
     spreads = dict(zip(comparison.inputs["key"], comparison.inputs["sd"], strict=True))
     regions = {
         key: ", ".join(names.split(", ")[1:])
         for key, names in zip(comparison.inputs["key"], comparison.inputs["regions"], strict=True)
     }
-    return environment.get_template("comparison.html").render(
-        comparison=comparison, whole=whole, records=records, spreads=spreads, regions=regions, pictures=embedded
+    return rendered(
+        "comparison.html",
+        comparison=comparison,
+        whole=whole,
+        records=records,
+        spreads=spreads,
+        regions=regions,
+        pictures=embedded(images),
     )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 import math
 from collections.abc import Mapping
 from pathlib import Path
@@ -33,6 +32,7 @@ from tyrefem.reports.diagnosis_histories import RunHistory, history_pictures
 from tyrefem.reports.diagnosis_law import law_block
 from tyrefem.reports.diagnosis_missing import tells_missing_heat
 from tyrefem.reports.diagnosis_summary import SUMMARY, summary
+from tyrefem.reports.template import embedded, rendered
 from tyrefem.reports.words import number
 
 if TYPE_CHECKING:
@@ -90,15 +90,9 @@ def save(d: DiagnosisData, folder: str | Path, workers: Workers = 1) -> Path:
 
 def page(d: DiagnosisData, images: Mapping[str, bytes], *, version: str) -> str:
     """The page's HTML; ``images``: file name -> PNG."""
-    from jinja2 import Environment, PackageLoader, StrictUndefined
-
-    environment = Environment(
-        loader=PackageLoader("tyrefem.reports", "."), autoescape=True, undefined=StrictUndefined, trim_blocks=True,
-        lstrip_blocks=True,
-    )  # fmt: skip
     place = where(d)
-    embedded = {name: base64.b64encode(png).decode("ascii") for name, png in images.items()}
-    return environment.get_template("diagnosis.html").render(
+    return rendered(
+        "diagnosis.html",
         d=d,
         version=version,
         label=label(d),
@@ -117,7 +111,7 @@ def page(d: DiagnosisData, images: Mapping[str, bytes], *, version: str) -> str:
         offered_sensors=_offers(d, "sensors", "place", "run"),
         offered_drives=_offers(d, "drives", "drive", "sensor"),
         assumed=_assumed(d),
-        pictures=embedded,
+        pictures=embedded(images),
         shown=SHOWN,
         law=law_block(d),
         unexplained=d.verdict == UNEXPLAINED and tells_missing_heat(d),

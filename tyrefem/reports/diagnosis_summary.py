@@ -20,6 +20,7 @@ from tyrefem.output import versions
 from tyrefem.reports.diagnosis_gap import gap_figure
 from tyrefem.reports.diagnosis_missing import tells_missing_heat
 from tyrefem.reports.figures.style import picture
+from tyrefem.reports.template import rendered
 
 if TYPE_CHECKING:
     from tyrefem.diagnose.diagnosis import DiagnosisData
@@ -53,17 +54,12 @@ def summary(d: DiagnosisData, *, version: str) -> str:
 
     The lines of text are counted, and the picture gets the height that they leave; a table shows at most `ROWS` rows.
     """
-    from jinja2 import Environment, PackageLoader, StrictUndefined
-
-    environment = Environment(
-        loader=PackageLoader("tyrefem.reports", "."), autoescape=True, undefined=StrictUndefined, trim_blocks=True,
-        lstrip_blocks=True,
-    )  # fmt: skip
     tables, sentences = summary_tables(d), [clipped(sentence) for sentence in headline(d)]
     made = [clipped(sentence) for sentence in _made(d)]
     origin = clipped(_origin(d, version), SMALL_CHARACTERS - LINK)
     drawn = gap_figure(d, 7.6, RUNS, SENSORS if len(d.gap.runs) <= RUNS / 2 else SENSORS // 2)
-    return environment.get_template("diagnosis_summary.html").render(
+    return rendered(
+        "diagnosis_summary.html",
         d=d,
         label=label(d),
         headline=list(zip(QUESTIONS, sentences, strict=True)),

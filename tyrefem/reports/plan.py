@@ -11,6 +11,7 @@ from tyrefem.output import atomic_folder, write_json
 from tyrefem.plan.record import record
 from tyrefem.plan.words import plan_words, step_name
 from tyrefem.reports.figures.style import FONT, INK, PALETTE, QUIET, TITLE, add_axes, figure, png, short, tidy, title
+from tyrefem.reports.template import rendered
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -45,15 +46,10 @@ def save(plan: PlanData, folder: str | Path) -> Path:
 
 def page(plan: PlanData, drawn: bytes) -> str:
     """The page's HTML; ``drawn``: the picture as PNG."""
-    from jinja2 import Environment, PackageLoader, StrictUndefined
-
-    environment = Environment(
-        loader=PackageLoader("tyrefem.reports", "."), autoescape=True, undefined=StrictUndefined, trim_blocks=True,
-        lstrip_blocks=True,
-    )  # fmt: skip
     first, *rest = plan_words(plan)
     sets = plan.beliefs.sets
-    return environment.get_template("plan.html").render(
+    return rendered(
+        "plan.html",
         plan=plan,
         version=tyrefem.__version__,
         first=first,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 import json
 from collections.abc import Mapping, Sequence
 from glob import escape
@@ -18,6 +17,7 @@ from tyrefem.output import atomic_folder, jsonable, versions
 from tyrefem.plugins.named import named_plugins, rows_of_plugins
 from tyrefem.reports.figures.style import png
 from tyrefem.reports.rig_figures import heated_patch, histories, layers_figure, pictures, references
+from tyrefem.reports.template import embedded, rendered
 from tyrefem.reports.words import number
 
 if TYPE_CHECKING:
@@ -29,20 +29,15 @@ if TYPE_CHECKING:
 
 def page(identification: IdentificationData, pictures: Mapping[str, bytes], cards: Mapping[str, Any]) -> str:
     """The page's HTML; ``pictures`` maps file name -> PNG, ``cards`` layer -> material card data."""
-    from jinja2 import Environment, FileSystemLoader, StrictUndefined
-
-    environment = Environment(
-        loader=FileSystemLoader(Path(__file__).parent), autoescape=True, undefined=StrictUndefined,
-        trim_blocks=True, lstrip_blocks=True,
-    )  # fmt: skip
-    return environment.get_template("rig.html").render(
+    return rendered(
+        "rig.html",
         identification=identification,
         sentences=sentences(identification),
         coverage=COVERAGE,
         references=references(identification.card),
         name_in_words=name_in_words,
         number=number,
-        pictures={name: base64.b64encode(png).decode("ascii") for name, png in pictures.items()},
+        pictures=embedded(pictures),
         cards=cards,
         diffusivities=diffusivities(identification),
         ranked=[

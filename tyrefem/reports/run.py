@@ -27,6 +27,7 @@ from tyrefem.reports.inputs import (
     study_text,
 )
 from tyrefem.reports.run_files import loaded_cycle, of_run, summary
+from tyrefem.reports.template import rendered
 from tyrefem.reports.words import number, seconds
 
 if TYPE_CHECKING:
@@ -357,8 +358,6 @@ def write_report(result: ResultData, path: Path, *, three_d: bool = False) -> Pa
 
 def render(result: ResultData, explored: ExploreLink | None = None, *, three_d: bool = False) -> str:
     """The report's HTML."""
-    from jinja2 import Environment, PackageLoader, StrictUndefined
-
     from tyrefem.reports.figures import pictures
 
     drawn = dict(pictures(result))
@@ -369,11 +368,7 @@ def render(result: ResultData, explored: ExploreLink | None = None, *, three_d: 
         {"data": base64.b64encode(png).decode("ascii"), "caption": CAPTIONS.get(name, ""), "name": name}
         for name, png in drawn.items()
     ]
-    environment = Environment(
-        loader=PackageLoader("tyrefem.reports", "."), autoescape=True, undefined=StrictUndefined, trim_blocks=True,
-        lstrip_blocks=True,
-    )  # fmt: skip
-    return environment.get_template("run.html.j2").render(pictures=embedded, explored=explored, **content(result))
+    return rendered("run.html.j2", pictures=embedded, explored=explored, **content(result))
 
 
 def _three_d(result: ResultData) -> bytes | None:

@@ -23,6 +23,7 @@ from tyrefem.reports import sweep_answer_figures as sweep_answer_figures
 from tyrefem.reports.explore_link import explore_link
 from tyrefem.reports.figures.style import png
 from tyrefem.reports.sweep_figures import figures
+from tyrefem.reports.template import rendered
 from tyrefem.reports.words import number
 from tyrefem.sweep.pareto import DEFAULT_AIMS
 from tyrefem.sweep.sweep import Sweep
@@ -53,15 +54,10 @@ COLUMNS = (
 
 def write_page(design: DesignData, summary: Mapping[str, Any], folder: Path) -> list[str]:
     """Write ``sweep.html``, and the pictures as PNG files in ``pictures``; return the names of these files."""
-    from jinja2 import Environment, PackageLoader, StrictUndefined
-
-    environment = Environment(
-        loader=PackageLoader("tyrefem.reports", "."), autoescape=True, undefined=StrictUndefined, trim_blocks=True,
-        lstrip_blocks=True,
-    )  # fmt: skip
     swept = design.swept or (design.optimum.swept if design.optimum is not None else None)
     parts = [_part(part, folder) for part in design.parts]
-    page = environment.get_template("sweep.html").render(
+    page = rendered(
+        "sweep.html",
         title=summary["title"],
         study=design.study,
         how="" if design.swept is None else summary["words"][1].strip(),
