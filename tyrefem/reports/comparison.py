@@ -5,7 +5,6 @@ from __future__ import annotations
 import io
 import json
 import math
-import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -17,6 +16,7 @@ from tyrefem.compare.stored import CURVES, RECORD, RESIDUALS, TABLE, curves_tabl
 from tyrefem.output import atomic_folder
 from tyrefem.reports.figures.phases import Phase, draw_phases, make_room
 from tyrefem.reports.template import embedded, rendered
+from tyrefem.reports.words import history_files
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -38,14 +38,9 @@ MOST_COLUMNS = 15
 
 def pictures(comparison: ComparisonData) -> dict[str, bytes]:
     """File name -> PNG: ``deviations.png``, then ``histories-<run>.png`` for each run."""
-    drawn = {"deviations.png": _png(deviations(comparison))}
-    for run in comparison.residuals["run"].unique():
-        name = re.sub(r"[^\w.-]+", "-", str(run)).strip("-.") or "run"
-        file, again = f"histories-{name}.png", 2
-        while file in drawn:
-            file, again = f"histories-{name}-{again}.png", again + 1
-        drawn[file] = _png(histories(comparison, run))
-    return drawn
+    runs = list(comparison.residuals["run"].unique())
+    drawn = {file: _png(histories(comparison, run)) for file, run in zip(history_files(runs), runs, strict=True)}
+    return {"deviations.png": _png(deviations(comparison)), **drawn}
 
 
 def histories(comparison: ComparisonData, run: str) -> Figure:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -28,6 +27,7 @@ from tyrefem.reports.figures.style import (
     time_unit,
     title,
 )
+from tyrefem.reports.words import history_files
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -73,14 +73,8 @@ def _last(run: MeasuredDrive) -> float:
 
 def history_pictures(histories: Sequence[RunHistory]) -> dict[str, bytes]:
     """File name -> PNG, for every run; a diagnosis lets a worker draw them."""
-    drawn: dict[str, bytes] = {}
-    for history in histories:
-        name = re.sub(r"[^\w.-]+", "-", history.run.name).strip("-.") or "run"
-        file, again = f"histories-{name}.png", 2
-        while file in drawn:
-            file, again = f"histories-{name}-{again}.png", again + 1
-        drawn[file] = png(histories_figure(history))
-    return drawn
+    files = history_files(history.run.name for history in histories)
+    return {file: png(histories_figure(history)) for file, history in zip(files, histories, strict=True)}
 
 
 def histories_figure(history: RunHistory) -> Figure:

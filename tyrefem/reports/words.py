@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+import re
+from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
 from tyrefem.boundaries.friction_tables import IceRow, WoodRow, ice_distance
@@ -32,6 +33,22 @@ def number(value: float, significant: int = 4) -> str:
     if "." in text:
         text = text.rstrip("0").rstrip(".")
     return f"{float(text):,.0f}".replace(",", " ") if size >= 4 else text
+
+
+def history_files(runs: Iterable[object]) -> list[str]:
+    """Names of the pictures of runs, all different: letters, digits, ``_``, ``.`` and ``-`` of the run's name stay.
+
+    >>> history_files(["taxi 1", "taxi/1"])
+    ['histories-taxi-1.png', 'histories-taxi-1-2.png']
+    """
+    files: list[str] = []
+    for run in runs:
+        name = re.sub(r"[^\w.-]+", "-", str(run)).strip("-.") or "run"
+        file, again = f"histories-{name}.png", 2
+        while file in files:
+            file, again = f"histories-{name}-{again}.png", again + 1
+        files.append(file)
+    return files
 
 
 def seconds(value: float) -> str:
