@@ -29,6 +29,9 @@ def test_names_areas_and_volumes_at_the_default_size(section: Section, mesher: s
     for region in section.regions:
         assert tyre.area(region) == pytest.approx(section.area(region), rel=3e-3)
         assert tyre.volume(region) == pytest.approx(section.volume(region), rel=3e-3)
+        points, weights = tyre.ring_points(region)
+        assert weights.sum() == pytest.approx((2 if section.half else 1) * tyre.volume(region), rel=1e-12)
+        assert points.shape == (2, len(weights))
 
 
 @both

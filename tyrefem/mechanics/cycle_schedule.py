@@ -71,6 +71,12 @@ class CycleSchedule(Brief, PickledFields):
         return sum(weight * quantity(self.cases[phase][knot]) for phase, knot, weight in self.weights(time))
 
     @property
+    def most_deflected(self) -> tuple[int, int]:
+        """Phase and knot of the first load case with the largest deflection."""
+        places = [(phase, knot) for phase, cases in enumerate(self.cases) for knot in range(len(cases))]
+        return max(places, key=lambda place: self.cases[place[0]][place[1]].deflection)
+
+    @property
     def zones(self) -> tuple[Any, ...]:
         """The strain provider's zones."""
         return self.cycles[0][0].zones

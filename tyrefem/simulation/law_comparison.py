@@ -125,7 +125,7 @@ class LawComparison:
     @functools.cached_property
     def volumes(self) -> dict[str, float]:
         """Part -> volume of the whole tyre, m3."""
-        return {part.name: float(self._quadrature(part)[1].sum()) for part in self.parts}
+        return {part.name: float(self.mesh.ring_points(part.name)[1].sum()) for part in self.parts}
 
     @functools.cached_property
     def energies(self) -> dict[str, dict[str, float]]:
@@ -142,21 +142,10 @@ class LawComparison:
         for outcome in self.outcomes:
             of_law = {}
             for part in self.parts:
-                points, weights = self._quadrature(part)
+                points, weights = self.mesh.ring_points(part.name)
                 of_law[part.name] = float(getattr(outcome, density)(part, points) @ weights)
             integrals[outcome.law] = of_law | {TOTAL: sum(of_law.values())}
         return integrals
-
-    def _quadrature(self, part: Zone) -> tuple[Array, Array]:
-        """Points (2, n) and weights (n,), m3 of the whole tyre."""
-        import skfem
-
-        mesh = self.mesh.mesh
-        element = skfem.ElementQuad1() if isinstance(mesh, skfem.MeshQuad) else skfem.ElementTriP1()
-        basis = skfem.Basis(mesh, element, elements=mesh.subdomains[part.name], intorder=3)
-        points = np.asarray(basis.global_coordinates()).reshape(2, -1)
-        sides = 2 if self.study.section.half else 1
-        return points, np.asarray(basis.dx).ravel() * points[0] * 2 * np.pi * sides
 
     def table(self) -> pd.DataFrame:
         """``kind``, ``name``, ``unit`` and a column per law, of deflection, energies, coefficients, temperatures."""
@@ -269,10 +258,8 @@ def compare_laws(study: StudyData | str, laws: tuple[str, ...] | None = None) ->
 
 def _outcome(study: StudyData, law: str) -> LawOutcome:
     result = run(study.replace({"mechanics.strain": law}))
-    cases = result.tyre.schedule.cases
-    deflections = {(i, k): case.deflection for i, phase in enumerate(cases) for k, case in enumerate(phase)}
-    phase, knot = max(deflections, key=lambda place: deflections[place])
-    if not deflections[phase, knot] > 0:
+    phase, knot = result.tyre.schedule.most_deflected
+    if not result.tyre.schedule.cases[phase][knot].deflection > 0:
         raise InputError("the tyre is never under load: no strain cycle to compare", field="drive.load")
     return LawOutcome(law, result, phase, knot)
 

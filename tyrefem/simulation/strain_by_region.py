@@ -39,9 +39,7 @@ class StrainByRegion(Brief):
     @classmethod
     def of(cls, tyre: RollingTyre) -> StrainByRegion:
         """The load case of the largest deflection of a tyre's drive."""
-        cases = tyre.schedule.cases
-        places = [(phase, knot) for phase, knots in enumerate(cases) for knot in range(len(knots))]
-        return cls(tyre, *max(places, key=lambda place: cases[place[0]][place[1]].deflection))
+        return cls(tyre, *tyre.schedule.most_deflected)
 
     @property
     def case(self) -> LoadCase:
@@ -61,6 +59,7 @@ class StrainByRegion(Brief):
 
     def heat_density(self, zone: Zone, points: Array) -> Array:
         """Heat source q, W/m3, at points (2, n) of a zone at the drive's initial temperature, without effects."""
+        # A copy: the tyre's source keeps the energies at its nodes.
         source = replace(self.tyre.hysteresis[zone.name])
         return source(points, self.time, np.full(points.shape[1], self.tyre.drive.initial))
 
@@ -82,17 +81,6 @@ class StrainByRegion(Brief):
             if region in self.tyre.study.section.regions
         }
 
-    def _quadrature(self, zone: Zone) -> tuple[Array, Array]:
-        """Points (2, n) and weights (n,), m3 of the whole tyre."""
-        import skfem
-
-        mesh = self.tyre.mesh.mesh
-        element = skfem.ElementQuad1() if isinstance(mesh, skfem.MeshQuad) else skfem.ElementTriP1()
-        basis = skfem.Basis(mesh, element, elements=mesh.subdomains[zone.name], intorder=3)
-        points = np.asarray(basis.global_coordinates()).reshape(2, -1)
-        sides = 2 if self.tyre.study.section.half else 1
-        return points, np.asarray(basis.dx).ravel() * points[0] * 2 * np.pi * sides
-
     @functools.cached_property
     def table(self) -> pd.DataFrame:
         """A row per region (of arcs: per part of one strain law), the most heat first; the last is the whole tyre.
@@ -105,7 +93,7 @@ class StrainByRegion(Brief):
 
         rows: list[dict[str, Any]] = []
         for zone in self.tyre.schedule.zones:
-            points, weights = self._quadrature(zone)
+            points, weights = self.tyre.mesh.ring_points(zone.name)
             energy = self.cycle.energy_density(zone.name, points)
             most = int(np.argmax(energy))
             s, depth = self.tyre.study.section.locate(points[:, [most]].T)

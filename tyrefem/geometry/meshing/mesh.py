@@ -106,6 +106,19 @@ class TyreMesh(Brief, PickledFields):
             total += float((polygon_areas(triangle) * triangle[..., 0].mean(axis=0)).sum())
         return 2 * np.pi * total
 
+    def ring_points(self, region: str) -> tuple[Array, Array]:
+        """Quadrature of third order over the ring of a region: points (2, n) in (r, z), m, and weights (n,), m3.
+
+        The weights are those of the whole tyre: a half section counts twice.
+        """
+        import skfem
+
+        element = skfem.ElementQuad1() if isinstance(self.mesh, skfem.MeshQuad) else skfem.ElementTriP1()
+        basis = skfem.Basis(self.mesh, element, elements=self.mesh.subdomains[region], intorder=3)
+        points = np.asarray(basis.global_coordinates()).reshape(2, -1)
+        sides = 2 if self.section.half else 1
+        return points, np.asarray(basis.dx).ravel() * points[0] * 2 * np.pi * sides
+
     def elements_between(self, start: float, end: float, region: str | None = None) -> NDArray[np.int64]:
         """Elements between two stations ``start < |s| < end`` of the meridian, of one region or of all.
 
