@@ -160,97 +160,17 @@ class LargeMotion:
         ----------
         start : a nearby balance. tolerance : last relative change of the motion, and of the load.
         """
-        outside = self.nonlinear(start.harmonics)
-        u, forces = start.motion, start.forces
-        closed: Flags | None = None
-        rate = start.rate
-        tangent: Tangent | None = None
-        unstable, change, last, now = 0, np.inf, np.inf, start.load
-        convex = False
-        damping = DAMPING if deflection != start.deflection else REFINING
-        for count in range(STEPS):
-            if tangent and change <= ALIKE and not convex:
-                tangent = replace(tangent, forces=outside.forces(u))
-            else:
-                tangent, convex = outside.at(u, np.float32), bool(self._folding) and change > CONVEX
-                tangent = self._folding.convex(tangent) if convex else tangent
-            gaps, normal_components, touching, _ = self._road(
-                replace(start, motion=u, forces=forces, deflection=deflection)
-            )
-            distance = gaps - touching.tail @ forces
-            rotations = self._rotations(outside, u)
-            enough = (ENERGY * tolerance) ** 2 * self.factors.work(tangent.forces, u)
-            if closed is None:
-                closed = touching.closed(gaps, forces, forces > 0)
-            end = SearchEnd(INNER, enough)
-            step = newton_step(touching, closed, tangent, distance, end, rotations, damping=damping)
-            change = self._gradient_change(outside, step.motion)
-            moved = deflection - start.deflection
-            if count == 0 and change > LARGE_STEP * AHEAD and moved:
-                back = normal_components * (1 - AHEAD / change) * moved
-                deflection = start.deflection + AHEAD / change * moved
-                gaps, distance = gaps + back, distance + back
-                closed = touching.closed(gaps, forces, forces > 0)
-                step = newton_step(touching, closed, tangent, distance, end, rotations, damping=damping)
-                change = self._gradient_change(outside, step.motion)
-            while not (step.stable and change < WILD):
-                unstable += 1
-                if unstable > UNSTABLE:
-                    return None
-                new = step.unstable is not None and self._folding.add(tangent, step.unstable)
-                if new or (self._folding and not convex):
-                    tangent, convex = self._folding.convex(tangent), True
-                else:
-                    damping *= 3
-                step = newton_step(touching, closed, tangent, distance, end, rotations, damping=damping)
-                change = self._gradient_change(outside, step.motion)
-            share = min(1.0, CORRECTION / max(change, 1e-300))
-            after = gaps - touching.into(step.motion) + touching.tail @ (step.forces - forces)
-            u, forces = u + share * step.motion, forces + share * (step.forces - forces)
-            before, closed = closed, touching.closed(after, step.forces, closed)
-            last_load, now = now, self._sides * float(normal_components @ forces)
-            last_before = last
-            last = share * float(np.abs(step.motion).max()) / max(float(np.abs(u).max()), 1e-300)
-            done = last <= (tolerance if tolerance <= LOOSE else NEXT * tolerance) and share == 1
-            done &= damping < 2 * DAMPING  # a damped step is short also far from balance
-            done &= abs(now - last_load) <= LOAD_CHANGE * tolerance * abs(now) and change <= LAST
-            flipped = FLIPPED[0] if tolerance > LOOSE else FLIPPED[1]
-            done &= int((closed != before).sum()) <= max(1.0, flipped * int(closed.sum()))
-            damping = max(damping / 3, DAMPING if change > SMOOTH else LEAST_DAMPING)
-            if load is not None:
-                if rate is None:
-                    lowered = self._rate(touching, before, tangent, normal_components, BORDER, rotations)
-                    rate = lowered.motion, lowered.forces, self._sides * float(normal_components @ lowered.forces)
-                pushed, slope = np.where(before, rate[1], 0.0), rate[2]
-                if not slope > 0:
-                    return None
-                missed = abs(load - now) / load
-                done &= missed <= tolerance
-                # A contact that opens and closes in turn keeps the load from settling.
-                still = count == STEPS - 1 or max(last, last_before) <= STILL * tolerance
-                done |= still and share == 1 and max(last, missed) <= CYCLE * tolerance
-                if not done:  # forces that the search leaves unbalanced do work on the rate: the load without them
-                    now -= self._sides * np.pi * self.factors.work(step.residual, rate[0])
-                more = (load - now) / slope
-                far = abs(more) * self._gradient_change(outside, rate[0])
-                if far > AHEAD:
-                    done, more = False, more * AHEAD / far
-                now += more * slope
-                deflection, u, forces = deflection + more, u + more * rate[0], forces + more * pushed
-            if done:
-                return replace(
-                    start, deflection=deflection, motion=u, forces=np.maximum(forces, 0.0), load=now, rate=rate
-                )
+        search = _BalanceSearch(self, start, deflection, tolerance)
+        for _ in range(STEPS):
+            if not search.advance() or (load is not None and not search.carry(load)):
+                return None
+            if search.settled:
+                return search.balance
         return None
 
     def _rotations(self, outside: NonlinearForces, motion: Array) -> Rotations:
         """Rotations of a motion, in single precision: they only lead a search."""
         return Rotations.of(outside.round.within(np.float32), motion, self.factors.harmonics.held)
-
-    @staticmethod
-    def _gradient_change(outside: NonlinearForces, motion: Array) -> float:
-        """Largest change of a displacement gradient by a motion."""
-        return float(np.abs(outside.round.within(np.float32).gradient(motion)).max())
 
     def _road(self, moment: DeflectedState) -> tuple[Array, Array, Touching, Array]:
         """Gaps, m, their decrease per metre of deflection, the points of possible contact, and the tread's displacement
@@ -327,3 +247,157 @@ class LargeMotion:
                 return math.nan
         energy = np.pi * self.factors.work(tangent.product(rate.motion), rate.motion)
         return self._sides * float(energy + rate.forces @ touching.tail @ rate.forces)
+
+
+class _BalanceSearch:
+    """Newton steps from a nearby balance ``start`` to one at a deflection, m, or from there under a load.
+
+    ``moment``: the state so far. ``settled``: whether it is a balance. ``change``: of a displacement gradient in the
+    latest step. ``last``, ``last_before``: relative changes of the motion in the latest two steps.
+    """
+
+    tangent: Tangent
+    touching: Touching
+    rotations: Rotations
+    step: NewtonStep
+
+    def __init__(self, tyre: LargeMotion, start: DeflectedState, deflection: float, tolerance: float) -> None:
+        self.tyre, self.start, self.tolerance = tyre, start, tolerance
+        self.moved = deflection - start.deflection
+        self.moment = replace(start, deflection=deflection)
+        self.outside = tyre.nonlinear(start.harmonics)
+        self.damping = DAMPING if self.moved else REFINING
+        self.steps = self.unstable = 0
+        self.change = self.last = self.last_before = np.inf
+        self.convex = self.whole = self.settled = False
+        #: Contact sets of the next step and of the latest one; gaps, m, and what a step's motion has to close of them;
+        #: their decrease per metre of deflection.
+        self.closed: Flags = np.zeros(0, dtype=bool)
+        self.before = self.closed
+        self.gaps = self.distance = self.normal_components = np.zeros(0)
+        self.end = SearchEnd()
+
+    @property
+    def balance(self) -> DeflectedState:
+        """The state so far; contact only presses."""
+        return replace(self.moment, forces=np.maximum(self.moment.forces, 0.0))
+
+    def advance(self) -> bool:
+        """A Newton step at the deflection, damped until it is stable; False: it stays unstable.
+
+        If the first step would move the tyre too far, the deflection becomes a smaller one.
+        """
+        self._linearise()
+        self._solve()
+        if not self.steps and self.change > LARGE_STEP * AHEAD and self.moved:
+            self._deflect_less()
+            self._solve()
+        while not (self.step.stable and self.change < WILD):
+            self.unstable += 1
+            if self.unstable > UNSTABLE:
+                return False
+            self._stiffen()
+            self._solve()
+        self._take()
+        return True
+
+    def carry(self, load: float) -> bool:
+        """Move along the rate of motion towards a load, N; False: the load does not rise with the deflection."""
+        moment, tolerance = self.moment, self.tolerance
+        motion, forces, slope = self._rate()
+        if not slope > 0:
+            return False
+        now = moment.load
+        missed = abs(load - now) / load
+        # A contact that opens and closes in turn keeps the load from settling.
+        still = self.steps == STEPS or max(self.last, self.last_before) <= STILL * tolerance
+        self.settled &= missed <= tolerance
+        self.settled |= still and self.whole and max(self.last, missed) <= CYCLE * tolerance
+        if not self.settled:  # forces that the search leaves unbalanced do work on the rate: the load without them
+            now -= self.tyre._sides * np.pi * self.tyre.factors.work(self.step.residual, motion)
+        more = (load - now) / slope
+        far = abs(more) * self._gradient_change(motion)
+        if far > AHEAD:
+            self.settled, more = False, more * AHEAD / far
+        self.moment = replace(
+            moment, deflection=moment.deflection + more, motion=moment.motion + more * motion,
+            forces=moment.forces + more * np.where(self.before, forces, 0.0), load=now + more * slope,
+            rate=(motion, forces, slope),
+        )  # fmt: skip
+        return True
+
+    def _linearise(self) -> None:
+        """Forces, stiffness and contact at the state; a stiffness nearly the same is used again."""
+        tyre, moment = self.tyre, self.moment
+        if self.steps and self.change <= ALIKE and not self.convex:
+            self.tangent = replace(self.tangent, forces=self.outside.forces(moment.motion))
+        else:
+            self.tangent = self.outside.at(moment.motion, np.float32)
+            self.convex = bool(tyre._folding) and self.change > CONVEX
+            if self.convex:
+                self.tangent = tyre._folding.convex(self.tangent)
+        self.gaps, self.normal_components, self.touching, _ = tyre._road(moment)
+        self.distance = self.gaps - self.touching.tail @ moment.forces
+        self.rotations = tyre._rotations(self.outside, moment.motion)
+        work = tyre.factors.work(self.tangent.forces, moment.motion)
+        self.end = SearchEnd(INNER, (ENERGY * self.tolerance) ** 2 * work)
+        if not self.steps:
+            self.closed = self.touching.closed(self.gaps, moment.forces, moment.forces > 0)
+
+    def _solve(self) -> None:
+        """The Newton step, and its change of a gradient."""
+        self.step = newton_step(
+            self.touching, self.closed, self.tangent, self.distance, self.end, self.rotations, damping=self.damping
+        )
+        self.change = self._gradient_change(self.step.motion)
+
+    def _gradient_change(self, motion: Array) -> float:
+        """Largest change of a displacement gradient by a motion."""
+        return float(np.abs(self.outside.round.within(np.float32).gradient(motion)).max())
+
+    def _deflect_less(self) -> None:
+        """Take the deflection at which a gradient changes by `AHEAD`."""
+        moment, share = self.moment, AHEAD / self.change
+        back = self.normal_components * (1 - share) * self.moved
+        self.moment = replace(moment, deflection=self.start.deflection + share * self.moved)
+        self.gaps, self.distance = self.gaps + back, self.distance + back
+        self.closed = self.touching.closed(self.gaps, moment.forces, moment.forces > 0)
+
+    def _stiffen(self) -> None:
+        """After an unstable step: elements that fold in it become convex, or else the damping grows."""
+        folding, direction = self.tyre._folding, self.step.unstable
+        new = direction is not None and folding.add(self.tangent, direction)
+        if new or (folding and not self.convex):
+            self.tangent, self.convex = folding.convex(self.tangent), True
+        else:
+            self.damping *= 3
+
+    def _take(self) -> None:
+        """Move by the step, at most by `CORRECTION`; then see whether the tyre has settled at this deflection."""
+        moment, step, touching, tolerance = self.moment, self.step, self.touching, self.tolerance
+        share = min(1.0, CORRECTION / max(self.change, 1e-300))
+        after = self.gaps - touching.into(step.motion) + touching.tail @ (step.forces - moment.forces)
+        motion, forces = moment.motion + share * step.motion, moment.forces + share * (step.forces - moment.forces)
+        self.before, self.closed = self.closed, touching.closed(after, step.forces, self.closed)
+        load = self.tyre._sides * float(self.normal_components @ forces)
+        self.last_before = self.last
+        self.last = share * float(np.abs(step.motion).max()) / max(float(np.abs(motion).max()), 1e-300)
+        self.steps, self.whole = self.steps + 1, share == 1
+        flipped = FLIPPED[0] if tolerance > LOOSE else FLIPPED[1]
+        self.settled = (
+            self.last <= (tolerance if tolerance <= LOOSE else NEXT * tolerance)
+            and self.whole
+            and self.damping < 2 * DAMPING  # a damped step is short also far from balance
+            and abs(load - moment.load) <= LOAD_CHANGE * tolerance * abs(load)
+            and self.change <= LAST
+            and int((self.closed != self.before).sum()) <= max(1.0, flipped * int(self.closed.sum()))
+        )
+        self.damping = max(self.damping / 3, DAMPING if self.change > SMOOTH else LEAST_DAMPING)
+        self.moment = replace(moment, motion=motion, forces=forces, load=load)
+
+    def _rate(self) -> tuple[Array, Array, float]:
+        """Motion, forces and load per metre of deflection, with the contact set of the latest step; computed once."""
+        if self.moment.rate is not None:
+            return self.moment.rate
+        rate = self.tyre._rate(self.touching, self.before, self.tangent, self.normal_components, BORDER, self.rotations)
+        return rate.motion, rate.forces, self.tyre._sides * float(self.normal_components @ rate.forces)
