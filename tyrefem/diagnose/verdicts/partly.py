@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -26,6 +27,10 @@ class Revision(NamedTuple):
     reasons: tuple[str, ...]
     doubts: tuple[str, ...]
     members: Members = ()
+
+    def because(self, reason: str) -> Revision:
+        """The same verdict with a further reason."""
+        return self._replace(reasons=(*self.reasons, reason))
 
     def doubted(self, doubt: str) -> Revision:
         """Unexplained for a further reason."""
@@ -55,64 +60,78 @@ def beside_discrepancies(
     ``law_replaced``: the study's strain law was wrong, and another one stands in its place; nothing is "identified".
     ``heat``: heat of unknown origin without and beside the effects that are about to be named.
     """
-    revision = Revision(judgement.verdict, judgement.reasons, judgement.doubts)
-    if judgement.verdict == NO_GAP:
-        return revision
     leading, least = robustness.models[0], settings.named_probability
-    if judgement.verdict == IDENTIFIED:
-        doubtful = [each for each in judgement.best.members if robustness.mean(each.key) < least]
-        if not doubtful and not law_replaced:
-            return revision
-        doubt = _doubt(robustness, doubtful[0]) if doubtful else "the study's strain law is not that of the data"
-        revision = revision.doubted(doubt)
-    elif judgement.verdict == CONFOUNDED:
-        if leading.name == NONE:
-            return revision
-        asked_for = f"the data ask for {leading.words} ({percent(leading.probability)})"
-        if robustness.as_it_is < NOT_EXCLUDED:
-            revision = revision.doubted(asked_for)
-        else:
-            revision = revision._replace(reasons=(*revision.reasons, f"{asked_for}, but do not exclude effects alone"))
-    members = robustness.robust(leading.effects, least)
-    for member in replace(robustness, laws=()).robust(leading.effects, least):
-        if member not in members:
-            law = min(robustness.counted, key=lambda law: law.named.get(member.key, 0.0))
-            reason = f"{member.key} is not named: with {law.words} it is less probable, or of the other sign"
-            revision = revision._replace(reasons=(*revision.reasons, reason))
-    for member in (member for member in members if member in robustness.idle):
-        reason = f"{member.key} is not named: beside the films' speed laws in full the data do not ask for it"
-        revision = revision._replace(reasons=(*revision.reasons, reason))
-    members = tuple(member for member in members if member not in robustness.idle)
-    if single := tuple(member for member in members if member.runs):
-        keys = " + ".join(member.key for member in single)
-        runs = ", ".join(dict.fromkeys(run for each in single for run in each.runs))
-        doubt = f"{keys} is not named: no other run tells it from what else differs in {runs}"
-        members = tuple(member for member in members if member not in single)
-        if members or revision.verdict == CONFOUNDED:
-            revision = revision._replace(reasons=(*revision.reasons, doubt))
-        else:
-            revision = revision.doubted(doubt)
+    revision = _questioned(judgement, robustness, least, law_replaced=law_replaced)
+    if revision is None:
+        return Revision(judgement.verdict, judgement.reasons, judgement.doubts)
+    revision, members = _acting_anyway(revision, robustness, least)
     if not members or len([member for member in members if member not in leading.allowed]) > settings.largest:
         return revision
     held_out = tuple(member for member in members if _predicts_held_out(leading, (member,)))
     if len(held_out) > 1 and not _predicts_held_out(leading, held_out):
         held_out = ()
     if held_out != members:
-        keys = " + ".join(member.key for member in members if member not in held_out)
-        doubt = f"{keys} is not named: the held-out runs are predicted better without it"
+        worse = _keys(member for member in members if member not in held_out)
+        doubt = f"{worse} is not named: the held-out runs are predicted better without it"
         if not held_out:
             return revision.doubted(doubt)
-        revision, members = revision._replace(reasons=(*revision.reasons, doubt)), held_out
+        revision, members = revision.because(doubt), held_out
+    keys = _keys(members)
     if heat is not None and heat.explains(settings.free_heat_lead):
-        keys = " + ".join(member.key for member in members)
         doubt = f"{keys} is not named: heat of unknown origin explains the data about as well"
-        if revision.verdict == CONFOUNDED:
-            return revision._replace(reasons=(*revision.reasons, doubt))
-        return revision.doubted(doubt)
+        return revision.because(doubt) if revision.verdict == CONFOUNDED else revision.doubted(doubt)
     smallest = min(robustness.least(member.key) for member in members)
-    keys = " + ".join(member.key for member in members)
     reason = f"{keys} acts with {at_least(smallest)} probability whatever else is wrong"
-    return revision._replace(verdict=PARTLY, reasons=(*revision.reasons, reason), members=members)
+    return revision.because(reason)._replace(verdict=PARTLY, members=members)
+
+
+def _keys(members: Iterable[Candidate]) -> str:
+    return " + ".join(member.key for member in members)
+
+
+def _questioned(judgement: Judgement, robustness: Robustness, least: float, *, law_replaced: bool) -> Revision | None:
+    """The verdict if more may be wrong than effects; None: the verdict on effects alone stays."""
+    revision, leading = Revision(judgement.verdict, judgement.reasons, judgement.doubts), robustness.models[0]
+    if judgement.verdict == NO_GAP:
+        return None
+    if judgement.verdict == IDENTIFIED:
+        doubtful = [each for each in judgement.best.members if robustness.mean(each.key) < least]
+        if doubtful:
+            return revision.doubted(_doubt(robustness, doubtful[0]))
+        return revision.doubted("the study's strain law is not that of the data") if law_replaced else None
+    if judgement.verdict == CONFOUNDED:
+        if leading.name == NONE:
+            return None
+        asked_for = f"the data ask for {leading.words} ({percent(leading.probability)})"
+        if robustness.as_it_is < NOT_EXCLUDED:
+            return revision.doubted(asked_for)
+        return revision.because(f"{asked_for}, but do not exclude effects alone")
+    return revision
+
+
+def _acting_anyway(revision: Revision, robustness: Robustness, least: float) -> tuple[Revision, Members]:
+    """The effects that act in all runs beside every discrepancy, and the verdict with the reasons against others."""
+    leading = robustness.models[0]
+    members = robustness.robust(leading.effects, least)
+    for member in replace(robustness, laws=()).robust(leading.effects, least):
+        if member not in members:
+            law = min(robustness.counted, key=lambda law: law.named.get(member.key, 0.0))
+            revision = revision.because(
+                f"{member.key} is not named: with {law.words} it is less probable, or of the other sign"
+            )
+    for member in (member for member in members if member in robustness.idle):
+        revision = revision.because(
+            f"{member.key} is not named: beside the films' speed laws in full the data do not ask for it"
+        )
+    members = tuple(member for member in members if member not in robustness.idle)
+    single = tuple(member for member in members if member.runs)
+    if not single:
+        return revision, members
+    runs = ", ".join(dict.fromkeys(run for each in single for run in each.runs))
+    doubt = f"{_keys(single)} is not named: no other run tells it from what else differs in {runs}"
+    members = tuple(member for member in members if member not in single)
+    keeps = members or revision.verdict == CONFOUNDED
+    return revision.because(doubt) if keeps else revision.doubted(doubt), members
 
 
 def _doubt(robustness: Robustness, member: Candidate) -> str:
