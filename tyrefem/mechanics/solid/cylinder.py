@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from tyrefem.mechanics.solid.body import Body
 from tyrefem.mechanics.solid.compounds import determinant
 from tyrefem.mechanics.solid.elements import Indices
-from tyrefem.mechanics.solid.newton import ROUND_OFF
+from tyrefem.mechanics.solid.newton import ROUND_OFF, StuckError, out_of_balance, place_words
 
 Array = NDArray[np.float64]
 #: A contact is closed when the gap is below this share of the cylinder's radius.
@@ -28,10 +28,6 @@ class CylinderChoice:
     first_step: float = 0.015
     smallest_step: float = 1e-4
     halvings: int = 3
-
-
-class StuckError(Exception):
-    """A step that did not converge; the message gives the place of the largest error."""
 
 
 def equilibrium_inside(
@@ -89,7 +85,7 @@ def equilibrium_inside(
             share /= 2
         now, largest_change = now + share * change.reshape(-1, 2).T, float(np.abs(change).max())
         forces = np.where(closed, -(residual + matrix @ change)[2 * nodes], 0.0)
-    raise StuckError(_worst(body, residual, free))
+    raise StuckError(out_of_balance(body, residual, free))
 
 
 def _folded(body: Body, displacement: Array) -> str | None:
@@ -99,17 +95,4 @@ def _folded(body: Body, displacement: Array) -> str | None:
     if (volume > 0).all():
         return None
     element = int(np.unravel_index(int(volume.argmin()), volume.shape)[0])
-    return f"the mesh folds {_place(body, body.rings.points[:, element].mean(axis=-1), element)}"
-
-
-def _worst(body: Body, residual: Array, free: Indices) -> str:
-    size = np.zeros(len(residual))
-    size[free] = residual[free]
-    node = int(np.hypot(*size.reshape(-1, 2).T).argmax())
-    element = int(np.flatnonzero((body.rings.element_nodes == node).any(axis=1))[0])
-    return f"the forces stay out of balance, most {_place(body, body.rings.nodes[:, node], element)}"
-
-
-def _place(body: Body, place: Array, element: int) -> str:
-    r, z = place * 1e3
-    return f"at (r, z) = ({r:.1f}, {z:.1f}) mm, region '{body.rings.region_of(element)}'"
+    return f"the mesh folds {place_words(body, body.rings.points[:, element].mean(axis=-1), element)}"

@@ -10,9 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.errors import InputError
-from tyrefem.mechanics.solid.cylinder import CylinderChoice, StuckError, equilibrium_inside
+from tyrefem.mechanics.solid.cylinder import CylinderChoice, equilibrium_inside
 from tyrefem.mechanics.solid.elements import Indices
 from tyrefem.mechanics.solid.inflation import Inflation
+from tyrefem.mechanics.solid.newton import StuckError
 
 Array = NDArray[np.float64]
 

@@ -13,6 +13,7 @@ from tyrefem.brief import Brief
 from tyrefem.errors import InputError
 from tyrefem.mechanics.solid.body import Body
 from tyrefem.mechanics.solid.compounds import determinant
+from tyrefem.mechanics.solid.elements import Indices
 
 Array = NDArray[np.float64]
 #: A Newton step smaller than this share of the largest coordinate is below rounding errors.
@@ -54,7 +55,7 @@ class Equilibrium(Brief):
     residuals: tuple[tuple[float, ...], ...] = field(repr=False)
 
 
-class _StuckError(Exception):
+class StuckError(Exception):
     """A load step that did not converge; the message gives the place of the largest error."""
 
 
@@ -74,7 +75,7 @@ def equilibrium(
     if not np.isfinite(pressure):
         raise InputError(f"the pressure must be a finite number, not {pressure:g} Pa", field="pressure")
     if near is not None and pressure and near.shape == (2, body.rings.n_nodes):
-        with suppress(_StuckError):
+        with suppress(StuckError):
             displacement, history = _newton(body, near, pressure, choice)
             return Equilibrium(displacement, pressure, (1.0,), (history,))
     before = now = np.zeros((2, body.rings.n_nodes))
@@ -88,11 +89,11 @@ def equilibrium(
         try:
             try:
                 displacement, history = _newton(body, guess, aim * pressure, choice)
-            except _StuckError:
+            except StuckError:
                 if guess is now:
                     raise
                 displacement, history = _newton(body, now, aim * pressure, choice)
-        except _StuckError as stuck:
+        except StuckError as stuck:
             step = (aim - reached) / 2
             if step < choice.smallest_step:
                 raise InputError(
@@ -126,7 +127,7 @@ def spun_equilibrium(body: Body, still: Equilibrium, choice: NewtonChoice | None
         part = replace(body, centrifugal=body.centrifugal.at(aim))
         try:
             now, history = _newton(part, now, still.pressure, choice)
-        except _StuckError as stuck:
+        except StuckError as stuck:
             step = (aim - reached) / 2
             if step < choice.smallest_step:
                 raise InputError(
@@ -146,7 +147,7 @@ def _newton(body: Body, start: Array, pressure: float, choice: NewtonChoice) -> 
 
     free, now = body.free, start
     if not _possible(body, now):
-        raise _StuckError(_folded(body, now))
+        raise StuckError(_folded(body, now))
     size = abs(pressure) * float(np.linalg.norm(body.load(now)[free]))
     if body.centrifugal is not None:
         size += float(np.linalg.norm(body.centrifugal.force(body.rings.nodes + now)[free]))
@@ -154,13 +155,13 @@ def _newton(body: Body, start: Array, pressure: float, choice: NewtonChoice) -> 
     history = [float(np.linalg.norm(residual[free])) / size]
     while history[-1] > choice.tolerance:
         if len(history) > choice.iterations or not np.isfinite(history[-1]):
-            raise _StuckError(_worst(body, residual))
+            raise StuckError(out_of_balance(body, residual, free))
         matrix = body.stiffness(now, pressure)[free][:, free]
         change = np.zeros(now.shape)
         try:
             change.T.flat[free] = -splu(matrix.tocsc(), **PIVOTS).solve(residual[free])
         except RuntimeError:
-            raise _StuckError("nothing holds the body: its stiffness is singular") from None
+            raise StuckError("nothing holds the body: its stiffness is singular") from None
         now, residual = _line_search(body, now, change, residual, pressure, choice)
         history.append(float(np.linalg.norm(residual[free])) / size)
         if np.abs(change).max() <= ROUND_OFF * np.abs(body.rings.nodes).max():
@@ -190,7 +191,7 @@ def _line_search(
                 best = (better, tried, left)
         share /= 2
     if best is None:
-        raise _StuckError(_folded(body, now + share * change))
+        raise StuckError(_folded(body, now + share * change))
     return best[1], best[2]
 
 
@@ -202,19 +203,19 @@ def _possible(body: Body, displacement: Array) -> bool:
 def _folded(body: Body, displacement: Array) -> str:
     volume = determinant(body.deformation(displacement))
     element, point = np.unravel_index(int(volume.argmin()), volume.shape)
-    r, z = body.rings.points[:, element, point]
-    return (
-        f"the mesh folds at (r, z) = ({r * 1e3:.1f}, {z * 1e3:.1f}) mm, region '{body.rings.region_of(int(element))}'"
-    )
+    return f"the mesh folds {place_words(body, body.rings.points[:, element, point], int(element))}"
 
 
-def _worst(body: Body, residual: Array) -> str:
+def out_of_balance(body: Body, residual: Array, free: Indices) -> str:
+    """Where the forces (n_dofs,) on the ``free`` degrees of freedom are farthest from balance, in words."""
     size = np.zeros(len(residual))
-    size[body.free] = residual[body.free]
+    size[free] = residual[free]
     node = int(np.hypot(*size.reshape(-1, 2).T).argmax())
-    r, z = body.rings.nodes[:, node]
     element = int(np.flatnonzero((body.rings.element_nodes == node).any(axis=1))[0])
-    return (
-        f"the forces stay out of balance, most at (r, z) = ({r * 1e3:.1f}, {z * 1e3:.1f}) mm, "
-        f"region '{body.rings.region_of(element)}'"
-    )
+    return f"the forces stay out of balance, most {place_words(body, body.rings.nodes[:, node], element)}"
+
+
+def place_words(body: Body, place: Array, element: int) -> str:
+    """A place (r, z), m, of an element in words, with its region."""
+    r, z = place * 1e3
+    return f"at (r, z) = ({r:.1f}, {z:.1f}) mm, region '{body.rings.region_of(element)}'"
