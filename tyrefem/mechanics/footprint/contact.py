@@ -36,10 +36,7 @@ class Pressing(TyreOnRoad):
         ------
         InputError : an invalid number of harmonics, or too many for the memory.
         """
-        radius = self.reach
-        round_drum = 1.0 / (1.0 + 2 * radius / self.road.drum_diameter)
-        half_angle = math.acos(max(1 - deflection * round_drum / radius, -0.5))
-        share = 1.35 * half_angle / np.pi
+        share = 1.35 * self.road.half_angle(self.reach, deflection) / np.pi
         self.check_harmonics(harmonics, share)
         needed = min(math.ceil(share * harmonics) + 3, harmonics)
         if harmonics not in self._grids or self._grids[harmonics].n_angles < needed:

@@ -109,8 +109,8 @@ class RevolutionLoss(Brief):
     def one_cycle_density(self, convention: str = "nasa", count: int = 180) -> Array:
         """(n_elements, n_points) J/m3 if the revolution were one cycle, as in the NASA report: pi U tan d(f).
 
-        U is `StrainCycle.largest_energy`; ``sinusoid`` takes 2 pi, exact for one sinusoid of that amplitude. The loss
-        modulus follows the strain amplitude as with harmonics.
+        U is `StrainHarmonics.largest_energy`; ``sinusoid`` takes 2 pi, exact for one sinusoid of that amplitude. The
+        loss modulus follows the strain amplitude as with harmonics.
         """
         if convention not in ONE_CYCLE:
             raise InputError(f"no convention '{convention}'{nearest(convention, ONE_CYCLE)}")

@@ -56,6 +56,14 @@ class Road:
         r, z = nodes
         return float(self.in_road_axes(np.stack([np.zeros_like(r), r, z]))[1].max())
 
+    def half_angle(self, radius: float, deflection: float) -> float:
+        """Angle, rad, from the middle of the contact to where a rigid circle of this radius would leave the road.
+
+        acos(1 - D / (R (1 + R / R_drum))), for small deflections D over R; at most 120 deg.
+        """
+        around = 1.0 / (1.0 + 2 * radius / self.drum_diameter)
+        return math.acos(max(1 - deflection * around / radius, -0.5))
+
     def gaps(self, points: Array, distance: float) -> tuple[Array, Array]:
         """Gaps of points (3, ...), m, and unit vectors (3, ...) from them into the road."""
         x, y, _ = self.in_road_axes(points)

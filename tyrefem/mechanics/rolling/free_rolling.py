@@ -112,8 +112,7 @@ class LossyTyre(TyreOnRoad):
         ------
         InputError : no contact; contact all round; directions on a drum that do not settle.
         """
-        around = 1.0 / (1.0 + 2 * self.reach / self.road.drum_diameter)
-        half_angle = math.acos(max(1 - deflection * around / self.reach, -0.5))
+        half_angle = self.road.half_angle(self.reach, deflection)
         side = math.ceil(BEYOND * half_angle / math.pi * harmonics) + 3
         while side < harmonics:
             rolling = self._on(replace(self._grid(harmonics, side), shift=shift), deflection)

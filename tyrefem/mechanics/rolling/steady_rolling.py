@@ -231,8 +231,7 @@ class SteadyRolling(Brief):
 
     def _near(self, harmonics: int, deflection: float) -> RollingGrid:
         """The angles of the frictionless footprint, and `ANGLES_BEYOND` on both sides."""
-        around = 1.0 / (1.0 + 2 * self.reach / self.road.drum_diameter)
-        half_angle = math.acos(max(1 - deflection * around / self.reach, -0.5))
+        half_angle = self.road.half_angle(self.reach, deflection)
         side = min(math.ceil(1.1 * half_angle / math.pi * harmonics) + 1, harmonics - 1)
         grid = RollingGrid(self.points, self.road, harmonics, -side, side, self.shape)
         if self._loaded:
