@@ -124,3 +124,38 @@ def test_every_plugin_is_listed(write: Write, capfd: pytest.CaptureFixture[str])
     lines = capfd.readouterr().out.splitlines()
     assert len(lines) == len(files)
     assert {line.split("[")[1].rstrip("]") for line in lines} == set(map(str, files))
+
+
+ROAD_LAWS = """
+from typing import Annotated, ClassVar, Literal
+
+from tyrefem.boundaries.road import RoadLaw
+from tyrefem.quantity import Unit
+
+
+class Rising(RoadLaw):
+    law: Literal["rising"]
+    slope: Annotated[float, Unit("1", gt=0)]
+    example: ClassVar[dict] = {"slope": 200.0}
+
+    def film(self, contact):
+        return self.slope * contact.speed
+
+
+class Unknown(RoadLaw):
+    law: Literal["unknown"]
+    slope: Annotated[float, Unit("1", gt=0)]
+
+    def film(self, contact):
+        return self.slope
+"""
+
+
+def test_road_film_computes_a_law_of_the_user_with_the_values_of_its_example(
+    folder: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    (folder / "road_laws.py").write_text(ROAD_LAWS, encoding="utf-8")
+    assert main(["road", "film", "--speed", "10 m/s", "--footprint", "0.14 m", "--json"]) == 0
+    films = json.loads(capfd.readouterr().out)["films_W_m2_K"]
+    assert sorted(films) == ["cattani", "constant", "half-space", "rising"]
+    assert films["rising"] == pytest.approx(2000.0)

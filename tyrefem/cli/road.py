@@ -19,6 +19,8 @@ from tyrefem.output.folder import results_folder
 if TYPE_CHECKING:
     import pandas as pd
 
+    from tyrefem.boundaries import Contact
+
 road = typer.Typer(
     name="road",
     help="The film between tread and road (Cattani et al. 2023): tables, one contact, averaging.",
@@ -33,6 +35,12 @@ MOST = {"m/s": 400.0, "m": 10.0, "W/m/K": 1e4, "J/m**3/K": 1e9}
 #: Speeds (km/h) and footprint lengths (m) of the averaging sweep.
 SPEEDS = (0.2, 0.5, 1, 2, 5, 10, 15, 20, 50, 100, 200, 300)
 LENGTHS = (0.10, 0.14, 0.20, 0.30)
+#: Shipped laws of the road film in words.
+FILMS = {
+    "constant": "value of the NASA report, at every speed",
+    "cattani": "sqrt(lambda C v/FL)",
+    "half-space": "exact, road of its own effusivity",
+}
 
 
 def _positive(text: str, unit: str, option: str) -> float:
@@ -103,7 +111,7 @@ def film(
     road_heat_capacity: Annotated[str | None, typer.Option(help="Road's heat capacity; default: asphalt.")] = None,
 ) -> None:
     """Print the film coefficient of one contact by every law, and its penetration depth in the tread."""
-    from tyrefem.boundaries import Contact, laws
+    from tyrefem.boundaries import Contact
     from tyrefem.boundaries.road_film import half_space_film, propagation_depth
 
     v, length = _positive(speed, "m/s", "--speed"), _positive(footprint, "m", "--footprint")
@@ -114,19 +122,8 @@ def film(
         of_road["road_conductivity"] = road_conductivity
     if road_heat_capacity is not None:
         of_road["road_heat_capacity"] = road_heat_capacity
-    words = {
-        "constant": "value of the NASA report, at every speed",
-        "cattani": "sqrt(lambda C v/FL)",
-        "half-space": "exact, road of its own effusivity",
-    }
-    lines, films = [], {}
-    for name, law in sorted((name, law) for name, law in laws("road").items() if name in words):
-        try:
-            chosen: Any = law.check({"law": name} | (of_road if name == "half-space" else {}))
-        except InputError as error:
-            raise InputError(error.message, field=f"--{error.field}".replace("_", "-")) from None
-        films[name] = chosen.film(Contact(v, length, k, C))
-        lines.append(f"{name:16} {films[name]:10.1f} W/m2/K  {words.get(name, '')}".rstrip())
+    films = _films(Contact(v, length, k, C), of_road)
+    lines = [f"{name:16} {value:10.1f} W/m2/K  {FILMS.get(name, 'with its example')}" for name, value in films.items()]
     ideal = half_space_film(v, length, k, C)
     lines.append(f"{'half-space':16} {ideal:10.1f} W/m2/K  exact, road of constant temperature")
     depth = propagation_depth(length / v, k, C)
@@ -140,6 +137,27 @@ def film(
             "penetration_m": depth,
         }
     )
+
+
+def _films(contact: Contact, of_road: dict[str, Any]) -> dict[str, float]:
+    """Law -> film of a contact, W/m2/K. A law of the user has the values of its example; one without them is left out.
+
+    ``of_road``: the road's values for ``half-space``.
+    """
+    from tyrefem.boundaries import laws
+    from tyrefem.contracts.law import example_table
+    from tyrefem.plugins import working
+
+    films = {}
+    for name, law in sorted(laws("road").items()):
+        try:
+            chosen: Any = law.check(example_table(law, name) | (of_road if name == "half-space" else {}))
+        except InputError as error:
+            if name not in FILMS:
+                continue
+            raise InputError(error.message, field=f"--{error.field}".replace("_", "-")) from None
+        films[name] = working(chosen).film(contact)
+    return films
 
 
 @road.command()
