@@ -53,7 +53,7 @@ def tells_missing_heat(d: DiagnosisData) -> bool:
     """
     if d.verdict == UNEXPLAINED:
         return d.better_law is None or not d.better_law.alone
-    return d.verdict == PARTLY and d.missing.over_time is not None and bool(d.missing.over_time.clear)
+    return d.verdict == PARTLY and bool(d.missing.clear)
 
 
 def missing_figures(d: DiagnosisData) -> dict[str, Figure]:

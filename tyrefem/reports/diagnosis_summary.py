@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tyrefem.diagnose.numbers import amount, correction_amount, correction_subject, percent
-from tyrefem.diagnose.verdicts.verdict import NO_GAP, PARTLY, UNEXPLAINED
+from tyrefem.diagnose.verdicts.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, PARTLY, UNEXPLAINED
 from tyrefem.diagnose.words.discrepancy_record import effect_probability
 from tyrefem.diagnose.words.headline import QUESTIONS, corrections, headline, label
 from tyrefem.diagnose.words.heat import course_words, source_place
@@ -128,7 +128,7 @@ def _effects(d: DiagnosisData) -> SummaryTable:
 
 def _missing(d: DiagnosisData) -> SummaryTable:
     """The stated sources of missing heat, if the verdict tells of some."""
-    sources = d.missing.over_time.clear if d.missing.over_time and tells_missing_heat(d) else ()
+    sources = d.missing.clear if tells_missing_heat(d) else ()
     rows = [
         (
             source_place(d, source),
@@ -144,7 +144,7 @@ def _missing(d: DiagnosisData) -> SummaryTable:
 
 
 #: Verdicts that name every cause.
-_NAMED = ("identified", "confounded", NO_GAP)
+_NAMED = (IDENTIFIED, CONFOUNDED, NO_GAP)
 
 
 def _rms(d: DiagnosisData) -> SummaryTable:

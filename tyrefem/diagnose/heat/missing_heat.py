@@ -16,6 +16,7 @@ from tyrefem.diagnose.data.residuals import Residuals
 from tyrefem.diagnose.fitting.fits import FittedSet, continued, first_fits
 from tyrefem.diagnose.forward.multifidelity import Predictions
 from tyrefem.diagnose.heat.over_time import HeatOverTime
+from tyrefem.diagnose.heat.sources import UnknownSource
 from tyrefem.diagnose.inference.evidence import posterior
 from tyrefem.diagnose.unknowns.candidates import Candidate
 from tyrefem.diagnose.unknowns.unknown import Unknown
@@ -56,6 +57,11 @@ class UnknownHeat(Brief):
     kind: str
     held_out: float = math.nan
     over_time: HeatOverTime | None = None
+
+    @property
+    def clear(self) -> tuple[UnknownSource, ...]:
+        """The clear sources over time, see `HeatOverTime.clear`; empty if none were estimated."""
+        return () if self.over_time is None else self.over_time.clear
 
 
 def missing_heat(residuals: Residuals, unknown: Sequence[Unknown], about: FittedSet) -> UnknownHeat:

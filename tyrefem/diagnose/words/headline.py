@@ -181,7 +181,7 @@ def _confounded(d: DiagnosisData) -> tuple[str, str, str]:
 
 def _partly(d: DiagnosisData) -> tuple[str, str, str]:
     clauses = _joined([part_clause(d, member) for member in d.best.members])
-    sources = () if d.missing.over_time is None else d.missing.over_time.clear
+    sources = d.missing.clear
     in_heat = d.robustness is not None and d.robustness.models[0].name == HEAT and sources
     besides_it = f"besides it {heat_clause(d, sources)}" if in_heat else besides_words(d)
     wrong = f"This is a part of it: {clauses.rstrip('.')}; {besides_it}."
@@ -212,7 +212,7 @@ def _rest(d: DiagnosisData) -> str:
 
 
 def _unexplained(d: DiagnosisData) -> tuple[str, str, str]:
-    sources = () if d.missing.over_time is None else d.missing.over_time.clear
+    sources = d.missing.clear
     other = explaining_words(d)
     cause = f"{other[0].lower()}{other[1:].rstrip('.')}" if other else heat_clause(d, sources)
     wrong = f"No effect in the catalogue explains the deviation; {cause}."
