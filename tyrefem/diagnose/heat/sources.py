@@ -199,13 +199,11 @@ def dated(
     data: ProjectedData, place: Place, kind: str, others: Sequence[tuple[Place, Course]], grid: CourseGrid
 ) -> DatedSource:
     """The time and amount of a source with a course of a known kind, beside other sources."""
-    tried = [
-        (evidence(data, [*others, (place, course)]), course)
-        for course in told_courses(place, grid)
-        if course.kind == kind
-    ]
-    _, best = max(tried, key=lambda entry: entry[0])
-    return DatedSource(best, *_switch(tried), *_amount(data, place, best, others))
+    of_kind = [course for course in told_courses(place, grid) if course.kind == kind]
+    gains = np.array([evidence(data, [*others, (place, course)]) for course in of_kind])
+    best = of_kind[int(gains.argmax())]
+    times = mean_time([course.time for course in of_kind], gains)
+    return DatedSource(best, *times, *_amount(data, place, best, others))
 
 
 def told_courses(place: Place, grid: CourseGrid) -> Iterator[Course]:

@@ -113,9 +113,9 @@ class PlaceLaw(Brief):
             return self
         data, features = data.over(self.inflation), dict(self.terms.features)
         of_kind = [each for each in switches(variables, inside=inside) if each.kind == self.fit.switch.kind]
-        best = of_kind[int(_over_times(data, features, self.fit, of_kind).argmax())]
-        time, time_sd = _time(data, features, self.fit, of_kind)
-        fit = replace(self.fit, switch=best)
+        gains = _over_times(data, features, self.fit, of_kind)
+        time, time_sd = mean_time([switch.time for switch in of_kind], gains)
+        fit = replace(self.fit, switch=of_kind[int(gains.argmax())])
         amplitude, sd = _amplitude(data, features, fit)
         new = replace(self, fit=fit, amplitude=amplitude, sd=sd, time=time, time_sd=time_sd)
         return new if new.clear else self
