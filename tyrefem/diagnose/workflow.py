@@ -275,7 +275,7 @@ def _with_law(
     acting = where_it_acts(residuals, evaluations, heat)
     if acting is None:
         return ranking, law
-    missing = replace(ranking.missing, over_time=with_times(residuals, heat, acting))
+    missing = replace(ranking.missing, over_time=with_times(heat, acting))
     return replace(ranking, missing=missing), None if law is None else law.dated(acting.data)
 
 

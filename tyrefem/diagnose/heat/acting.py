@@ -21,7 +21,6 @@ from tyrefem.diagnose.heat.courses import BEGINS, ENDS, GROWS, PHASE, Course, Co
 from tyrefem.diagnose.heat.evidence import ProjectedData
 from tyrefem.diagnose.heat.over_time import HeatOverTime
 from tyrefem.diagnose.heat.sources import CLEAR, DatedSource, Place, dated, misfit
-from tyrefem.diagnose.heat.values import source_unknown, values_with_sources
 from tyrefem.diagnose.inference.evidence import posterior
 from tyrefem.diagnose.unknowns.unknown import Unknown
 
@@ -213,30 +212,17 @@ def where_it_acts(residuals: Residuals, evaluations: Evaluations, heat: HeatOver
     return None if acting is first or unclear else acting
 
 
-def with_times(residuals: Residuals, heat: HeatOverTime, acting: ActingHeat) -> HeatOverTime:
-    """The sources with times and amounts from where they act, and values of the unknowns to match."""
-    basis = heat.basis
-    assert basis is not None, "sources have a basis"
-    by_place = {
+def with_times(heat: HeatOverTime, acting: ActingHeat) -> HeatOverTime:
+    """The sources with times from where they act; their amounts stay those of the amended study."""
+    new = {
         (place.station, place.where): source
-        for (place, _), source in zip(basis.entries, acting.sources, strict=True)
+        for (place, _), source in zip(acting.entries, acting.sources, strict=True)
         if source is not None
     }
     sources = tuple(
-        source if (new := by_place.get((source.station, source.where))) is None else replace(
-            source, time=new.time, time_sd=new.time_sd, amount=new.amount, sd=new.sd
-        )
+        replace(source, time=new[place].time, time_sd=new[place].time_sd)
+        if (place := (source.station, source.where)) in new
+        else source
         for source in heat.sources
-    )  # fmt: skip
-    values, sd, unknowns = heat.values, heat.sd, heat.unknowns
-    if heat.unknowns:
-        study, settings = residuals.study, residuals.settings
-        clear = {(source.station, source.where) for source in sources if source.clear}
-        named = [
-            (source_unknown(study, settings, *entry), *entry)
-            for entry in acting.entries
-            if (entry[0].station, entry[0].where) in clear
-        ]
-        values, sd = values_with_sources(acting.data, basis.nuisance, named)
-        unknowns = tuple(unknown for unknown, _, _ in named)
-    return replace(heat, sources=sources, values=values, sd=sd, unknowns=unknowns)
+    )
+    return replace(heat, sources=sources)
