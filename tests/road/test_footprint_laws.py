@@ -11,6 +11,7 @@ import tyrefem as tf
 from tyrefem.boundaries.road_film import hedekel_length, radial_deflection
 from tyrefem.errors import InputError
 from tyrefem.inputs.loading import GivenFootprint, HedekelFootprint, LoadCase
+from tyrefem.simulation.phases import deep_contacts, phase_states
 from tyrefem.simulation.rolling_tyre import RollingTyre
 
 R, D = 0.28, 0.03
@@ -72,6 +73,23 @@ def test_in_a_study_the_film_follows_the_footprint():
     assert short.road_film(0.0) == pytest.approx(2 * long.road_film(0.0))
     assert long.propagation_depth(0.0) == pytest.approx(2 * short.propagation_depth(0.0))
     assert tyre(drive__speed="0 mph").propagation_depth(0.0) == 0.0
+
+
+@pytest.mark.parametrize(("begins", "ends"), [(30.0, 0.0), (30.0, 5.0), (0.0, 30.0), (0.0, 0.001), (10.0, 10.0)])
+def test_a_contact_lasts_as_long_as_the_tread_rolls_its_length(begins, ends):
+    """A tyre that comes to rest has a last contact of half a second, not of hours."""
+    rolling = tyre(drive__speed={"from": f"{begins} m/s", "to": f"{ends} m/s"}, drive__duration="20 s")
+    t, length = 20 * (1 - 1e-12), rolling.schedule.cases[0][0].footprint_length
+    conductivity, capacity = rolling.tread
+    lasts = rolling.propagation_depth(t) ** 2 * capacity / (4 * conductivity)
+    mean_speed = ends + (begins - ends) * lasts / 40
+    assert mean_speed * lasts == pytest.approx(min(length, 10 * (begins + ends)), rel=1e-9)
+    assert lasts <= 20
+
+
+def test_a_stop_does_not_warn_of_a_deep_contact():
+    stop = tyre(drive__speed={"from": "30 m/s", "to": "0 m/s"}, drive__duration="20 s")
+    assert deep_contacts(stop.study.section, phase_states(stop)) == ()
 
 
 @pytest.mark.parametrize(

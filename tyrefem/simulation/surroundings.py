@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -168,14 +169,27 @@ class Surroundings:
         return self.acting.film("road", t, base)
 
     def propagation_depth(self, t: float) -> float:
-        """Penetration depth of a contact in the tread, m (Cattani et al. 2023, eq 8); 0 if the wheel does not turn."""
-        speed = self.motion(t).rolling_speed
-        if speed <= 0 or self.drive.locked_since(t) is not None:
+        """Penetration depth of the contact that ends at a time, m (Cattani et al. 2023, eq 8).
+
+        0 if the wheel does not turn.
+        """
+        if self.motion(t).rolling_speed <= 0 or self.drive.locked_since(t) is not None:
             return 0.0
-        contact = self.schedule.mean(lambda case: case.footprint_length, t) / speed
-        phase = self.drive.phases[self.drive.locate(t)[0]]
-        # Before a wheel locks, the contact time grows without limit: it is limited to the phase's duration.
-        return propagation_depth(min(contact, phase.duration) if phase.slides else contact, *self.tread)
+        return propagation_depth(self._contact_time(t), *self.tread)
+
+    def _contact_time(self, t: float) -> float:
+        """T, s, in which the tread has rolled the footprint's length L up to a time: L = v T + a T^2/2.
+
+        v is the rolling speed then, a the mean deceleration since the start of the phase, before which no contact
+        began if the speed changes: a wheel that comes to rest or locks has a last contact of finite time.
+        """
+        length = self.schedule.mean(lambda case: case.footprint_length, t)
+        start, speed = self.drive.starts[self.drive.locate(t)[0]], self.motion(t).rolling_speed
+        before = self.motion(start).rolling_speed
+        if t <= start or before == speed:
+            return length / speed
+        square = speed**2 + 2 * length * (before - speed) / (t - start)
+        return min(2 * length / (speed + math.sqrt(max(square, 0.0))), t - start)
 
     def air_film(self, t: float) -> float:
         """Outside film, W/m2/K."""
