@@ -195,9 +195,10 @@ def _at_end_of(result: ResultData) -> str:
 
 
 def _drag(result: ResultData, phase: PhaseState) -> str:
-    """Rolling resistance at the end of a phase, N."""
-    end = min(phase.end, float(result.times[-1]))
-    if phase.speed <= 0 or phase.start >= result.times[-1]:
+    """Rolling resistance at the end of a phase, N; none at rest."""
+    end, drive = min(phase.end, float(result.times[-1])), result.study.card.drive
+    rests = end == phase.end and drive.phases[drive.locate(phase.start)[0]].stops
+    if rests or phase.speed <= 0 or phase.start >= result.times[-1]:
         return "–"
     i = int(np.searchsorted(result.times, end - 1e-6))
     speed = result.tyre.motion(end * (1 - 1e-12)).speed

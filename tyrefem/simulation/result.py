@@ -351,7 +351,7 @@ class ResultData(Brief):
 
     @functools.cached_property
     def rolling_reading(self) -> int | None:
-        """Index of the last reading of the rolling phase with most heat; None if the tyre never rolls."""
+        """Index of the last reading of the rolling phase with most heat, in which it rolls; None if it never does."""
         return rolling_reading(self)
 
     @functools.cached_property

@@ -22,9 +22,9 @@ TURNS = 0.01
 class RollingResistance:
     """Rolling resistance from hysteresis, F = (total heat) / v, N, and coefficient F / F_z.
 
-    ``force`` and ``coefficient`` are at the end of ``phase``, the rolling phase with most heat; ``cold_*`` at the same
-    time with every point at the drive's initial temperature. All are zero if the tyre never rolls. With slip they are
-    the hysteresis per metre of the road, without the friction.
+    ``force`` and ``coefficient`` are at the end of ``phase``, the rolling phase with most heat, or at its last reading
+    before the tyre comes to rest; ``cold_*`` at the same time with every point at the drive's initial temperature. All
+    are zero if the tyre never rolls. With slip they are the hysteresis per metre of the road, without the friction.
     """
 
     phase: str
@@ -58,13 +58,17 @@ class Rolled(Protocol):
 
 @dataclass(frozen=True)
 class RollingPhase:
-    """A phase in which a loaded tyre rolls: its start and end, s; speed over the road, m/s, and load, N, at its end."""
+    """A phase in which a loaded tyre rolls: its start and end, s; speed over the road, m/s, and load, N, at its end.
+
+    ``stops``: the tyre is at rest at the end.
+    """
 
     name: str
     start: float
     end: float
     speed: float
     load: float
+    stops: bool = False
 
 
 def rolling_phases(tyre: RollingTyre) -> tuple[RollingPhase, ...]:
@@ -75,19 +79,22 @@ def rolling_phases(tyre: RollingTyre) -> tuple[RollingPhase, ...]:
         t = end * (1 - 1e-12)
         load = float(tyre.schedule.mean(lambda case: case.load, t))
         motion = tyre.motion(t)
-        if not phase.stops and load > 0 and motion.rolling_speed > TURNS * motion.speed:
-            phases.append(RollingPhase(phase.name, start, end, motion.speed, load))
+        if load > 0 and motion.rolling_speed > TURNS * motion.speed:
+            phases.append(RollingPhase(phase.name, start, end, motion.speed, load, phase.stops))
     return tuple(phases)
 
 
 def rolling_reading(result: Rolled) -> int | None:
-    """Index of the last reading of the rolling phase with most heat; None if the tyre never rolls."""
+    """Index of the last reading of the rolling phase with most heat, in which it still rolls.
+
+    None if the tyre never rolls, or only in phases to rest without a reading before it.
+    """
     best = _most_heat(result, rolling_phases(result.tyre))
     return None if best is None else best[0]
 
 
 def _most_heat(result: Rolled, phases: Sequence[RollingPhase]) -> tuple[int, RollingPhase] | None:
-    """The rolling phase with most heat, and its last reading."""
+    """The rolling phase with most heat, and its last reading in which the tyre rolls."""
     best: tuple[float, int] | None = None
     phase_of: dict[int, RollingPhase] = {}
     for phase in phases:
@@ -96,6 +103,10 @@ def _most_heat(result: Rolled, phases: Sequence[RollingPhase]) -> tuple[int, Rol
         end = min(phase.end, float(result.times[-1]))
         first, last = (int(np.searchsorted(result.times, t - 1e-6)) for t in (phase.start, end))
         heat = result.generated(last)[0] - result.generated(first)[0]
+        if phase.stops and end == phase.end:
+            last -= 1
+            if last == first:
+                continue
         best, phase_of[last] = (max(best, (heat, last)) if best else (heat, last)), phase
     return None if best is None else (best[1], phase_of[best[1]])
 

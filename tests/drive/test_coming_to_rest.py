@@ -1,0 +1,48 @@
+"""A tyre that rolls out: its rolling resistance, and what its report says of it."""
+
+from __future__ import annotations
+
+import functools
+import re
+
+import pytest
+
+import tyrefem as tf
+
+COARSE = {"mesh.size": "12 mm", "mesh.element": "P1", "output.every": "2 s"}
+
+
+@functools.cache
+def rolls(begins: str, ends: str, **changes: str) -> tf.Result:
+    speed = {"drive.speed": {"from": begins, "to": ends}, "drive.duration": "20 s"}
+    return tf.study("nasa-22x5.5-8pr").replace({**COARSE, **speed, **changes}).run()
+
+
+def test_a_tyre_that_comes_to_rest_has_the_rolling_resistance_of_its_last_reading_before():
+    """Loss per revolution does not depend on speed, so cold it is that of steady rolling."""
+    out, steady = rolls("20 m/s", "0 m/s").rolling_resistance, rolls("20 m/s", "20 m/s").rolling_resistance
+    assert out.phase == "rolling"
+    assert out.cold_force == pytest.approx(steady.cold_force, rel=1e-6)
+    assert 0.9 * out.cold_force < out.force < out.cold_force
+    assert rolls("20 m/s", "0 m/s").rolling_reading == len(rolls("20 m/s", "0 m/s").times) - 2
+
+
+def test_without_a_reading_before_rest_there_is_none():
+    brief = rolls("20 m/s", "0 m/s", **{"drive.duration": "1 s", "output.fields": 2})
+    assert list(brief.times) == [0.0, 1.0]
+    assert brief.rolling_reading is None
+    assert brief.rolling_resistance.force == 0
+
+
+@pytest.mark.parametrize(("ends", "shown"), [("0 m/s", "–"), ("10 m/s", "number")])
+def test_the_report_has_no_drag_at_rest(tmp_path, ends, shown):
+    """Power and speed of the last instant, both next to nothing, gave a hundred times the force."""
+    result = rolls("20 m/s", ends)
+    page = result.report(tmp_path / "report.html").read_text(encoding="utf-8")
+    cells = re.findall(r"<td[^>]*>([^<]*)</td>", page[page.index("drag [N]") :])
+    drag = cells[10]
+    assert cells[0] == "rolling"
+    if shown == "–":
+        assert drag == "–"
+    else:
+        assert float(drag) == pytest.approx(result.rolling_resistance.force, rel=0.01)
