@@ -50,6 +50,21 @@ def test_heat_goes_with_the_square_of_the_load(study):
     assert set(cold_power(study.replace({"drive.load": "0 N"})).values()) == {0.0}
 
 
+@pytest.mark.parametrize(("begins", "ends", "excess"), [(0.0, 4825.0, 0.0078), (2412.5, 6031.25, 0.0018)])
+def test_a_ramp_of_load_has_the_heat_of_nine_points(study, begins, ends, excess):
+    """The square of the load between nine points, as straight lines: h^2/6 (end - begin)^2 too much, h = 1/8."""
+    ramp = study.replace({"drive.load": {"from": f"{begins} N", "to": f"{ends} N"}, "drive.duration": "80 s"})
+    schedule = RollingTyre(ramp).schedule
+    times = (np.arange(4000) + 0.5) * 80 / 4000
+    squares = [
+        sum(weight * schedule.cases[phase][knot].load ** 2 for phase, knot, weight in schedule.weights(time))
+        for time in times.tolist()
+    ]
+    exact = (ends**3 - begins**3) / (3 * (ends - begins))
+    assert np.mean(squares) / exact - 1 == pytest.approx(excess, abs=5e-5)
+    assert np.mean(squares) - exact == pytest.approx((ends - begins) ** 2 / 384, rel=1e-4)
+
+
 def test_rows_along_the_meridian_are_joined_by_straight_lines(study):
     cycle = RollingTyre(study).schedule.cycles[0][0]
     rows = study.card.mechanics.energy.regions["tread"]
