@@ -8,6 +8,7 @@ import re
 import pytest
 
 import tyrefem as tf
+from tyrefem.cli.run import _words
 
 COARSE = {"mesh.size": "12 mm", "mesh.element": "P1", "output.every": "2 s"}
 
@@ -25,6 +26,12 @@ def test_a_tyre_that_comes_to_rest_has_the_rolling_resistance_of_its_last_readin
     assert out.cold_force == pytest.approx(steady.cold_force, rel=1e-6)
     assert 0.9 * out.cold_force < out.force < out.cold_force
     assert rolls("20 m/s", "0 m/s").rolling_reading == len(rolls("20 m/s", "0 m/s").times) - 2
+
+
+@pytest.mark.parametrize(("ends", "words"), [("0 m/s", ", last reading before rest in rolling\n"), ("10 m/s", ")\n")])
+def test_the_command_says_when_the_resistance_is_read(ends, words):
+    line = next(line for line in _words(rolls("20 m/s", ends)).splitlines(keepends=True) if "rolling resist" in line)
+    assert line.endswith(words)
 
 
 def test_without_a_reading_before_rest_there_is_none():

@@ -109,7 +109,9 @@ def _words(result: Result) -> str:
 
     resistance, budget = result.rolling_resistance, result.heat_budget
     rubbed = "" if result.sliding is None else f"sliding {budget.total('sliding') / 1e3:.1f} kJ, "
+    rests = [phase.name for phase in result.study.card.drive.phases if phase.stops]
     during = f", end of {resistance.phase}" if len(result.phases) > 1 and resistance.phase else ""
+    during = f", last reading before rest in {resistance.phase}" if resistance.phase in rests else during
     lines = [
         result.study.title,
         f"  hottest point       {peak['temperature_degC']:7.1f} degC in the {region}, {peak['s_m'] * 1e3:.0f} mm along "
