@@ -22,9 +22,10 @@ Indices = NDArray[np.int64]
 class LossyHarmonics(Harmonics):
     """K_n - i K''_n of u = Re((U_r, U_z, -i U_t) e^(i n t)), where material runs towards smaller angles t.
 
-    K''_n = int tan d(n W/2 pi) e_n(v) : C' : e_n(u) r dA, C' the part of the tangent that dissipates. Rubber that runs
-    with dt/dt = -W sees the wave as e^(-i n W time), so its stress is C' (1 - i tan d). K'' is symmetric, the matrices
-    have the sparsity of K_n. A steady motion U loses pi n U* K''_n U in a revolution.
+    K''_n = int tan d(n W/2 pi) e_n(v) : C' : e_n(u) r dA, C' the part of the tangent that dissipates. The angle t of
+    rubber falls by W per second: it sees the wave as e^(-i n W time), so its stress is C' (1 - i tan d). K'' is
+    symmetric, the matrices have the sparsity of K_n. A steady motion U loses 2 pi^2 n U* K''_n U, J, in a revolution of
+    the body.
 
     Parameters
     ----------
