@@ -21,7 +21,10 @@ Leaf = float | int | str | dict[str, float]
 Entry = dict[str, Leaf]
 
 #: Keys of files that differ from run to run or from machine to machine.
-LEFT_OUT = {"versions", "wall_time_s", "seconds", "taken_up", "written", "date", "tool", "guid", "checksums", "command"}
+LEFT_OUT = {
+    *("versions", "wall_time", "wall_time_s", "seconds", "taken_up", "written", "date", "tool", "guid", "checksums"),
+    "command",
+}
 #: Keys that hold sentences. Sentences elsewhere are left out because they have blanks.
 SENTENCES = {"title", "notes", "source", "summary", "words", "warnings", "reasons", "description", "sentence"}
 LONGEST_LIST = 12
@@ -149,12 +152,14 @@ def read_mesh(path: Path) -> Iterator[tuple[str, Leaf]]:
 
 
 def read_npz(path: Path) -> Iterator[tuple[str, Leaf]]:
-    """Every array of a real-time model."""
+    """Every array of a result or a real-time model, and the numbers of its data, JSON as text or as bytes."""
     import numpy as np
 
     with np.load(path, allow_pickle=False) as arrays:
         for name, values in arrays.items():
-            if values.dtype.kind in "fiub":
+            if name == "data" and values.dtype == np.uint8:
+                yield from leaves(json.loads(values.tobytes()), name)
+            elif values.dtype.kind in "fiub":
                 yield name, array_summary(values)
             elif values.dtype.kind == "U" and values.ndim == 0 and values.item()[:1] in "{[":
                 yield from leaves(json.loads(values.item()), name)

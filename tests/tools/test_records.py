@@ -6,7 +6,10 @@ import sys
 from pathlib import Path
 from types import ModuleType
 
+import numpy as np
 import pytest
+
+from tyrefem.output.arrays import write_arrays
 
 pytestmark = pytest.mark.fast
 
@@ -65,6 +68,16 @@ def test_a_printed_column_is_the_same_to_its_last_digit(tmp_path):
     assert leaves[0]["sensor"] == "crown"
     assert difference("end", leaves[0]["end [degC]"], leaves[1]["end [degC]"]) == 0.0
     assert difference("end", leaves[0]["end [degC]"], leaves[2]["end [degC]"]) > 1e-9
+
+
+def test_the_data_of_a_stored_result_are_its_numbers_without_its_wall_time(tmp_path):
+    entries = []
+    for number, seconds in enumerate((1.25, 10.5)):
+        file = tmp_path / f"{number}.npz"
+        write_arrays(file, {"wall_time": seconds, "steps": {"taken": 3}}, {"times": np.arange(3.0)}, {})
+        entries.append(dict(tool("number_files").read_npz(file)))
+    assert entries[0] == entries[1]
+    assert entries[0]["data.steps.taken"] == 3
 
 
 def test_round_off_may_grow_but_not_become_an_error():
