@@ -12,7 +12,7 @@ class DesignPart(Protocol):
     """An answer of a design study: a table and sentences. ``name`` is the name of its folder and files.
 
     Its pictures are registered for its class with `tyrefem.reports.sweep_figures.figures`; a class without pictures
-    sets ``drawn = False``.
+    sets ``drawn = False``. An answer from a `Sweep` hands on its ``interrupted``: then no further question is answered.
     """
 
     name: str
