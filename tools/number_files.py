@@ -23,7 +23,7 @@ Entry = dict[str, Leaf]
 #: Keys of files that differ from run to run or from machine to machine.
 LEFT_OUT = {
     *("versions", "wall_time", "wall_time_s", "seconds", "taken_up", "written", "date", "tool", "guid", "checksums"),
-    "command",
+    *("files_read", "command"),
 }
 #: Keys that hold sentences. Sentences elsewhere are left out because they have blanks.
 SENTENCES = {"title", "notes", "source", "summary", "words", "warnings", "reasons", "description", "sentence"}

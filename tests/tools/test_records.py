@@ -87,7 +87,13 @@ def test_round_off_may_grow_but_not_become_an_error():
 
 
 def test_what_changes_from_run_to_run_and_sentences_are_left_out():
-    data = {"wall_time_s": 3.0, "words": ["Hot."], "note": "a sentence", "rows": [{"name": "bead", "T": 31.0}]}
+    data = {
+        "wall_time_s": 3.0,
+        "words": ["Hot."],
+        "note": "a sentence",
+        "files_read": {"/a/study.toml": "1f"},
+        "rows": [{"name": "bead", "T": 31.0}],
+    }
     assert dict(tool("number_files").leaves(data)) == {"rows[bead].name": "bead", "rows[bead].T": 31.0}
 
 
