@@ -5,6 +5,7 @@ The package is independent of the content of the files.
 
 from __future__ import annotations
 
+import functools
 import json
 import math
 import os
@@ -23,10 +24,16 @@ from tyrefem.interruption import interruption_delayed
 
 def versions() -> dict[str, str]:
     """Versions of this package, of Python and of the libraries that influence the results."""
+    packages = {"tyrefem": tyrefem.__version__, "python": platform.python_version()}
+    return packages | {name: _version(name) for name in ("numpy", "scipy", "scikit-fem", "pint")}
+
+
+@functools.lru_cache(maxsize=8)
+def _version(name: str) -> str:
+    """Version of an installed library. Its metadata, with whole licences, take milliseconds to read."""
     import importlib.metadata
 
-    packages = {"tyrefem": tyrefem.__version__, "python": platform.python_version()}
-    return packages | {name: importlib.metadata.version(name) for name in ("numpy", "scipy", "scikit-fem", "pint")}
+    return importlib.metadata.version(name)
 
 
 #: Prefix of the temporary names of incomplete files.
