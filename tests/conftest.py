@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import subprocess
 import sys
@@ -13,6 +14,8 @@ import pytest
 from hypothesis import settings
 from long_files import LONG
 
+# The objects of a collection last: to look for garbage among half a million of them takes a quarter of its time.
+gc.disable()
 # Child processes that may not keep bytecode would compile the package each time: a quarter of a short command.
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 # Side by side, one thread of linear algebra each: more would only wait for each other.
@@ -33,6 +36,12 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Long files first."""
     first = {str(Path(__file__).parent / name): place for place, name in enumerate(LONG)}
     items.sort(key=lambda item: first.get(str(item.path), len(first)))
+
+
+def pytest_collection_finish() -> None:
+    """What has been collected stays; the tests leave garbage again."""
+    gc.freeze()
+    gc.enable()
 
 
 #: Of a `repr`: lines and letters at most.
