@@ -29,11 +29,11 @@ COARSE_MESH, FINER_MESH = "8 mm", "6 mm"
 COARSE = DiagnosisSettings(
     mesh_size=COARSE_MESH, largest=1, looks=1, odd_run_share=0.0, heat_widths=(3.0,), discrepancy_sizes=(1.0,)
 )
-#: Fits end after a few steps, each kind of discrepancy is tried in one size, and no effect in single runs: for claims
-#: that hold however well anything is fitted.
+#: Few sets are fitted, fits end after a few steps, each kind of discrepancy is tried in one size, and no effect in
+#: single runs: for claims that hold however well anything is fitted.
 HASTY = DiagnosisSettings(
-    largest=1, looks=1, first_steps=2, more_steps=2, most_continuations=1, beside_sets=1, beside_steps=2,
-    heat_widths=(3.0,), discrepancy_sizes=(1.0,), odd_run_share=0.0,
+    largest=1, looks=1, singles=2, most_sets=3, first_steps=2, more_steps=2, most_continuations=1, beside_sets=1,
+    beside_steps=2, heat_widths=(3.0,), discrepancy_sizes=(1.0,), odd_run_share=0.0,
 )  # fmt: skip
 #: What is hidden in the measurements, K; trials whose sensitivities are finished when the diagnosis is interrupted.
 WARMER, FINISHED = 25.0, 2

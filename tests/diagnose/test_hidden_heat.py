@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from documented_keys import checked
 from hidden import COARSE_MESH, FINER_MESH, HASTY, measure, study
 
 from tyrefem.diagnose.verdicts.verdict import IDENTIFIED, PARTLY, UNEXPLAINED
@@ -43,7 +44,9 @@ def test_heat_that_begins_late_is_dated_and_its_draft_effect_is_identified(
     d = owner.diagnose(settings=COARSE)
     d.save(tmp_path / "out")
     assert pickle.loads(pickle.dumps(d)).to_dict() == d.to_dict()
-    missing = json.loads((tmp_path / "out" / "verdict.json").read_text(encoding="utf-8"))["missing_heat"]
+    text = (tmp_path / "out" / "verdict.json").read_text(encoding="utf-8")
+    checked("diagnose", text)
+    missing = json.loads(text)["missing_heat"]
     first = missing["sources"][0]
     assert first["stated"]
     assert first["sign"] == "heat is missing"

@@ -6,35 +6,17 @@ import json
 from pathlib import Path
 
 import pytest
-import small
+from documented_keys import checked
 from every_command import Command, commands
-from jsonschema import Draft7Validator
-from jsonschema.exceptions import best_match
 
 import tyrefem as tf
 from tyrefem.cli import main
 from tyrefem.contracts import template
 from tyrefem.output.folder import checksum
-from tyrefem.schemas.answer_schema import answer_of, answers_schema, unknown_keys
 from tyrefem.schemas.answers import ANSWERS
 
-SCHEMA = answers_schema()
 #: Commands that take seconds; the others are tried here too, with ``--json`` alone.
 QUICK = ("check", "list", "new", "road film", "run", "show", "slide rise", "sweep")
-
-
-def checked(command: str, text: str) -> None:
-    """The text is one JSON object, with the keys of the command."""
-    data = json.loads(text)
-    assert isinstance(data, dict)
-    names = answer_of(command)
-    assert names, f"'{command}': its keys are missing in tyrefem/schemas/answers.py"
-    problems = [best_match(Draft7Validator({**SCHEMA, "anyOf": [{"$ref": f"#/definitions/{name}"}]}).iter_errors(data))
-                for name in names]  # fmt: skip
-    assert None in problems, [problem.message for problem in problems if problem]
-    definition = names[problems.index(None)]
-    without_words = sorted(set(unknown_keys(data, SCHEMA["definitions"][definition])))
-    assert without_words == [], f"{definition}: keys without words in tyrefem/schemas"
 
 
 #: Commands whose numbers come without time steps.
@@ -209,16 +191,6 @@ def test_every_command_lists_the_plugins_that_take_part(
         assert main(command.line(command.out(here / "new" / words), "--json", "--set", film)) == 0
         used = json.loads(capfd.readouterr().out)["plugins"]
         assert sorted(plugin["name"].split(".")[-1] for plugin in used) == sorted(expected), words
-
-
-def test_a_diagnosis_that_lacks_heat_has_documented_keys_too(here: Path, capfd: pytest.CaptureFixture[str]) -> None:
-    (here / "study.toml").write_text(small.study(measured=small.MEASURED + small.SECOND), encoding="utf-8")
-    (here / "measured.csv").write_text(small.table(0.3, 0.2), encoding="utf-8")
-    command = next(each for each in commands() if each.words == "diagnose")
-    assert main(command.line(here / "new" / "out", "--json")) == 0
-    out = capfd.readouterr().out
-    assert json.loads(out)["missing_heat"]
-    checked("diagnose", out)
 
 
 def test_no_keys_of_a_command_that_there_is_not() -> None:
