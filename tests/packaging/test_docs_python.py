@@ -21,6 +21,7 @@ import tyrefem
 from tyrefem.api import Study, studies
 from tyrefem.cli import main
 from tyrefem.diagnose.settings import DiagnosisSettings
+from tyrefem.heating_test.grid import Fineness
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tests" / "hostile"))
@@ -52,6 +53,8 @@ SMALL = {"mesh.size": "18 mm", "mesh.element": "P1", "mechanics.strain": "fem", 
 DIAGNOSED = {"docs/diagnosis.md", "docs/method/diagnosis.md", "docs/plan.md", "README.md"}
 #: Fits of these diagnoses and plans are on the mesh of that study.
 FITS = DiagnosisSettings(mesh_size="15 mm")
+#: Pages on many variants, whose drives take a minute.
+SHORT = {"docs/sweeps.md"}
 BIAS = {"docs/life.md", "docs/mechanics.md", "docs/two-way.md", "docs/wear.md", "README.md"}
 
 
@@ -92,6 +95,8 @@ def coarse(page: str, folder: Path) -> Callable[..., Study]:
             return load("nasa-22x5.5-8pr", {**(changes or {}), **SMALL})
         if file is not None and str(name) in ("hidden-effect", "example-validation"):
             return load(file, {"plan.drives": 2, "plan.sensors_most": 0} if page == "docs/plan.md" else None)
+        if page in SHORT and str(name).startswith("nasa-22x5.5"):
+            changes = {**(changes or {}), "drive.duration": "60 s"}
         more = next((flags for begin, flags in COARSE.items() if str(name).startswith(begin)), {})
         return load(name, {**(changes or {}), **more}, case)
 
@@ -106,6 +111,9 @@ def test_the_python_of_a_page_runs(page: str, tmp_path: Path, monkeypatch: pytes
     if page in DIAGNOSED:
         for name in ("diagnose", "plan"):
             monkeypatch.setattr(Study, name, functools.partialmethod(getattr(Study, name), settings=FITS))
+    # Identified once, on a coarse mesh of the patch.
+    quick = functools.partial(tyrefem.api.identify, fineness=Fineness(2, 5, 2), linear=False)
+    monkeypatch.setattr(tyrefem.api, "identify", quick)
     monkeypatch.chdir(tmp_path)
     monkeypatch.syspath_prepend(tmp_path)
     names: dict[str, Any] = {"tf": tyrefem, "np": np, **BEFORE.get(page, lambda _: {})(tmp_path)}
