@@ -194,3 +194,23 @@ def test_buckling_is_found_where_the_hoop_is_compressed() -> None:
         harmonics.compliance(60, harmonics.free[:3])
     assert harmonics.negative_pivots[60] > 0
     assert harmonics.buckling_place[60][1] > 0.2
+
+
+@pytest.mark.parametrize("hoop", [0.0, -2e6])
+def test_motions_balance_their_loads_where_the_stiffness_is_positive_and_where_it_is_not(hoop: float) -> None:
+    """A compressed hoop has motions with negative stiffness, which loads along the stiffest ones leave alone: K u = f
+    to rounding."""
+    from dataclasses import replace
+
+    mesh = block(np.linspace(0.9, 1.0, 3), np.linspace(0, 0.4, 9), low=lambda r, z: z < 1e-9)
+    state = stress_free(mesh, 1e6, 1e8, fixed=("low",))
+    stress = np.zeros_like(state.stress)
+    stress[2] = hoop
+    body = Harmonics(replace(state, stress=stress))
+    free = body.free
+    stiffness = body.stiffness(60)[free][:, free].toarray()
+    values, motions = np.linalg.eigh((stiffness + stiffness.T) / 2)
+    assert (values[0] > 0) == (hoop == 0)
+    loads = np.zeros((body.elements.n_dofs, 2))
+    loads[free] = motions[:, -2:] * values[-2:]
+    assert body.solve(60, loads)[free] == pytest.approx(motions[:, -2:], abs=1e-8)

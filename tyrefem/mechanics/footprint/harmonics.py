@@ -14,6 +14,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
+from tyrefem.conduction.linear_solver import Ordering
 from tyrefem.errors import InputError, nearest
 from tyrefem.mechanics.footprint.elements import COMPONENTS, NODES, SectionElements
 from tyrefem.mechanics.solid.body import Prestressed
@@ -206,6 +207,12 @@ class Harmonics(Brief):
         """Degrees of freedom that are not fixed."""
         return np.setdiff1d(np.arange(self.elements.n_dofs), self.held)
 
+    @functools.cached_property
+    def _ordering(self) -> Ordering:
+        """Elimination order of the free degrees of freedom: banded for the thin section of most tyres."""
+        pattern = self.matrices[0]
+        return Ordering(pattern.indptr, pattern.indices, self.free)
+
     def solve(self, n: float, loads: Array) -> Array:
         """Amplitudes (n_dofs, k), m, under loads (n_dofs, k) in N per radian: one factorisation.
 
@@ -213,26 +220,31 @@ class Harmonics(Brief):
         ------
         InputError : the state is not stable in harmonic n, or a rigid motion is free.
         """
-        from scipy.sparse.linalg import splu
-
-        free = self.free
-        reduced = self.stiffness(n)[free][:, free].tocsc()
-        try:
-            factor = splu(reduced, permc_spec="MMD_AT_PLUS_A", **SYMMETRIC)
-        except RuntimeError:
-            raise InputError(f"harmonic {n:g} has no stiffness: nothing holds the body") from None
-        loads = np.asarray(loads)
+        free, stiffness, loads = self.free, self.stiffness(n), np.asarray(loads)
         displacements = np.zeros_like(loads)
-        displacements[free] = factor.solve(np.ascontiguousarray(loads[free]))
+        displacements[free] = self._factor(n, stiffness).solve(np.ascontiguousarray(loads[free]))
         work = np.einsum("i...,i...->...", displacements, loads)
-        size = np.abs(displacements[free])
-        parts = np.einsum("i...,i...->...", size, abs(reduced) @ size)
+        size = np.abs(displacements)
+        parts = np.einsum("i...,i...->...", size, abs(stiffness) @ size)
         # A free rigid motion has a stiffness of rounding errors, of either sign.
         if not (np.abs(work) >= ROUND_OFF * parts).all():
             raise InputError(f"harmonic {n:g} has no stiffness: nothing holds the body")
         if (work < 0).any():
             raise InputError(f"the state is not stable: harmonic {n:g} has negative stiffness")
         return displacements
+
+    def _factor(self, n: float, stiffness: Any) -> Any:
+        """K_n of the free degrees of freedom, factored: by Cholesky, or by SuperLU where it is not positive."""
+        from scipy.sparse.linalg import splu
+
+        try:
+            return self._ordering.factor(stiffness.data)
+        except RuntimeError:
+            reduced = stiffness[self.free][:, self.free].tocsc()
+        try:
+            return splu(reduced, permc_spec="MMD_AT_PLUS_A", **SYMMETRIC)
+        except RuntimeError:
+            raise InputError(f"harmonic {n:g} has no stiffness: nothing holds the body") from None
 
     def _last(self, dofs: Indices) -> Indices:
         """Order of the free degrees of freedom that keeps the factor sparse, with ``dofs`` last; with a cache."""
