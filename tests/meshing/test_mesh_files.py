@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import meshio
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from tyrefem.errors import InputError
 from tyrefem.geometry import Section, load
@@ -208,3 +210,99 @@ def test_a_failure_keeps_the_older_file(tyre: TyreMesh, tmp_path: Path, monkeypa
         write(tyre, path)
     assert path.read_bytes() == before
     assert list(tmp_path.iterdir()) == [path]
+
+
+def changed(tyre: TyreMesh, path: Path, change: Callable[[meshio.Mesh], None]) -> Path:
+    """The tyre's file after a change of its points, cells and tags; cells[0] are elements, cells[1] lines."""
+    content = meshio.read(write(tyre, path))
+    change(content)
+    meshio.write(path, content, file_format="gmsh22")
+    return path
+
+
+def moved(r: float = 0.0, z: float = 0.0, factor_z: float = 1.0) -> Callable[[meshio.Mesh], None]:
+    def change(content: meshio.Mesh) -> None:
+        content.points = content.points * [1.0, factor_z, 1.0] + [r, z, 0.0]
+
+    return change
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (moved(factor_z=-1.0), "z is negative, down to .* a half section lies at z >= 0"),
+        (moved(z=1e-3), r"boundary 'symmetry' is not at z = 0: up to 1 mm"),
+        (moved(r=10e-3), "is at a mean radius of .* r is from the wheel's axis"),
+    ],
+)
+def test_a_mesh_in_another_place_is_refused(
+    section: Section, tyre: TyreMesh, tmp_path: Path, change: Callable[[meshio.Mesh], None], words: str
+) -> None:
+    path = changed(tyre, tmp_path / "tyre.msh", change)
+    with pytest.raises(InputError, match=words) as error:
+        read_for(section, path)
+    assert error.value.file == path
+
+
+def inner_element(content: meshio.Mesh) -> tuple[int, NDArray[np.int64]]:
+    """An element without a node on the surface, and its nodes."""
+    inside = ~np.isin(content.cells[0].data, content.cells[1].data).any(axis=1)
+    number = int(np.flatnonzero(inside)[0])
+    return number, content.cells[0].data[number]
+
+
+def element_twice(content: meshio.Mesh) -> None:
+    """One element more, which would heat and store twice."""
+    number, nodes = inner_element(content)
+    content.cells[0] = meshio.CellBlock("quad", np.vstack([content.cells[0].data, nodes]))
+    for parts in content.cell_data.values():
+        parts[0] = np.append(parts[0], parts[0][number])
+
+
+def node_moved(share: float) -> Callable[[meshio.Mesh], None]:
+    """A node on its way to the opposite corner of an element: beyond the middle the element is not convex."""
+
+    def change(content: meshio.Mesh) -> None:
+        _, nodes = inner_element(content)
+        content.points[nodes[0]] += share * (content.points[nodes[2]] - content.points[nodes[0]])
+
+    return change
+
+
+def side_collapsed(content: meshio.Mesh) -> None:
+    _, nodes = inner_element(content)
+    content.points[nodes[0]] = content.points[nodes[1]]
+
+
+def parts_not_joined(content: meshio.Mesh) -> None:
+    """The tread has nodes of its own where it meets the carcass, as an assembly of single meshes has."""
+    elements, tags = content.cells[0].data, content.cell_data["gmsh:physical"][0]
+    tread = tags == content.field_data["tread"][0]
+    shared = np.intersect1d(elements[tread], elements[~tread])
+    shared = shared[~np.isin(shared, content.cells[1].data)]
+    number = np.arange(len(content.points))
+    number[shared] = len(content.points) + np.arange(len(shared))
+    content.points = np.vstack([content.points, content.points[shared]])
+    elements[tread] = number[elements[tread]]
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (element_twice, "4 sides belong to more than two elements, one near r = "),
+        (node_moved(0.8), "1 of .* elements are folded, not convex or without area at a corner, as one near r = "),
+        (node_moved(1.4), "elements are folded, not convex or without area at a corner"),
+        (side_collapsed, "elements are folded, not convex or without area at a corner"),
+        (
+            parts_not_joined,
+            r"belong to no boundary.*; \d+ nodes lie on others: parts are not joined, merge their nodes",
+        ),
+    ],
+)
+def test_elements_that_would_give_wrong_integrals_are_refused(
+    section: Section, tyre: TyreMesh, tmp_path: Path, change: Callable[[meshio.Mesh], None], words: str
+) -> None:
+    """One element twice made a tyre 2.5 K hotter, without a word."""
+    path = changed(tyre, tmp_path / "tyre.msh", change)
+    with pytest.raises(InputError, match=words):
+        read_for(section, path)

@@ -155,13 +155,14 @@ def named_from(
     number = np.full(len(points), -1, dtype=np.int64)
     used = np.unique(elements)
     number[used] = np.arange(len(used))
+    _check_sides(mesh)
     surface = mesh.boundary_facets()
     named: dict[str, Indices] = {}
     for name, parts in edges.items():
         try:
             facets = find_facets(mesh, number[np.concatenate(parts)])
         except ValueError:
-            raise InputError(f"lines of boundary '{name}' are not sides of elements") from None
+            raise InputError(f"lines of boundary '{name}' are not sides of elements{_coincident(points)}") from None
         named[name] = facets[np.isin(facets, surface)]
     for name, nodes in (getattr(raw, "point_sets", None) or {}).items():
         name = (names or {}).get(name, name)
@@ -171,7 +172,10 @@ def named_from(
     named = {name: facets for name, facets in named.items() if len(facets)}
     _required(boundaries, named, "boundary")
     places = {name: np.searchsorted(surface, facets) for name, facets in named.items()}
-    _check_membership(places, len(surface), "side of the surface", "boundary", mesh.p[:, mesh.facets[0, surface]])
+    try:
+        _check_membership(places, len(surface), "side of the surface", "boundary", mesh.p[:, mesh.facets[0, surface]])
+    except InputError as error:
+        raise InputError(f"{error.message}{_coincident(points)}") from None
     return mesh.with_boundaries(named)
 
 
@@ -216,6 +220,24 @@ def _required(required: Iterable[str], available: Mapping[str, Any], what: str) 
             raise InputError(
                 f"the mesh has no {what} '{name}'{hint.replace('Allowed', 'Found').replace('allowed', 'found')}"
             )
+
+
+def _check_sides(mesh: Any) -> None:
+    """Raise an error if a side belongs to more than two elements: elements that lie on each other count twice."""
+    times = np.bincount(mesh.t2f.ravel(), minlength=mesh.facets.shape[1])
+    if times.max() > 2:
+        r, z = mesh.p[:, mesh.facets[:, int(np.argmax(times))]].mean(axis=1)
+        raise InputError(
+            f"{int((times > 2).sum())} sides belong to more than two elements, one near r = {r:.4g} m,"
+            f" z = {z:.4g} m: an element twice, or elements that lie on each other"
+        )
+
+
+def _coincident(points: NDArray[np.float64]) -> str:
+    """Words on nodes at the same place, to add to an error; empty if there are none."""
+    grid = np.round((points - points.min(axis=0)) / (1e-7 * np.ptp(points, axis=0).max() or 1.0))
+    twice = len(points) - len(np.unique(grid, axis=0))
+    return f"; {twice} nodes lie on others: parts are not joined, merge their nodes" if twice else ""
 
 
 def _check_membership(

@@ -158,17 +158,28 @@ class TyreMesh(Brief, PickledFields):
         """The direction of the plies, always the same function."""
         return PlyDirection(self.section)
 
+    @property
+    def _sides(self) -> Array:
+        """Vectors from every corner of the elements to the next, (n_corners, n_elements, 2) [m]."""
+        return np.roll(self._corners, -1, axis=0) - self._corners
+
+    @property
+    def corner_sines(self) -> Array:
+        """Sine of the angle at every corner, (n_corners, n_elements): not positive where an element is not convex, NaN
+        where a side has no length."""
+        sides = self._sides
+        before, lengths = np.roll(sides, 1, axis=0), np.linalg.norm(sides, axis=-1)
+        cross = before[..., 0] * sides[..., 1] - before[..., 1] * sides[..., 0]
+        with np.errstate(invalid="ignore"):
+            sines = cross / (lengths * np.roll(lengths, 1, axis=0))
+        return np.asarray(sines * np.sign(self.element_areas))
+
     @cached_property
     def quality(self) -> dict[str, float]:
         """Smallest scaled Jacobian (1: right angles) and largest edge ratio over the elements."""
-        corners = self._corners
-        edges = np.roll(corners, -1, axis=0) - corners
-        lengths = np.linalg.norm(edges, axis=-1)
-        before = np.roll(edges, 1, axis=0)
-        sines = before[..., 0] * edges[..., 1] - before[..., 1] * edges[..., 0]
-        sines = sines / (lengths * np.roll(lengths, 1, axis=0))
+        lengths = np.linalg.norm(self._sides, axis=-1)
         return {
-            "scaled_jacobian": float((sines * np.sign(self.element_areas)).min()),
+            "scaled_jacobian": float(self.corner_sines.min()),
             "edge_ratio": float((lengths.max(axis=0) / lengths.min(axis=0)).max()),
         }
 

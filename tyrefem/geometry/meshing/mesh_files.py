@@ -22,6 +22,10 @@ from tyrefem.quantity import parse
 AXES = {"rz": (0, 1), "zr": (1, 0), "xy": (0, 1), "yz": (1, 2), "zy": (2, 1), "xz": (0, 2), "zx": (2, 0)}
 #: Largest difference of a region's area between a mesh and its section, over the area.
 AREA_TOLERANCE = 0.1
+#: Largest difference of a region's mean radius, over the radius: an estimate.
+RADIUS_TOLERANCE = 0.02
+#: m; largest distance of the symmetry's nodes from the mid plane, as of rounded coordinates: an estimate.
+PLANE = 1e-5
 #: Formats in which `write` keeps names, with the options for meshio.
 WRITTEN: dict[str, dict[str, Any]] = {
     # Format 2.2 can be read by all programs that read gmsh files.
@@ -89,23 +93,59 @@ def read_for(
 
     Raises
     ------
-    InputError : errors of `read`; an area differs by more than a tenth, as with a wrong unit; r is negative.
+    InputError : errors of `read`; an area differs by more than a tenth, as with a wrong unit; a mean radius by more
+    than a fiftieth; r is negative; a half mesh is not at z >= 0; an element is folded or not convex.
     """
     mesh = read(path, names=names, axes=axes, unit=unit, regions=section.regions, boundaries=section.boundaries)
     if mesh.p[0].min() < 0:
         raise InputError(f"r is negative, down to {mesh.p[0].min():.4g} m; are the axes '{axes}'?", file=path)
+    if section.half and mesh.p[1].min() < -PLANE:
+        raise InputError(
+            f"z is negative, down to {mesh.p[1].min():.4g} m: a half section lies at z >= 0, its symmetry at z = 0",
+            file=path,
+        )
     edges = mesh.p[:, mesh.facets[0]] - mesh.p[:, mesh.facets[1]]
     cell = "tri" if mesh.t.shape[0] == 3 else "quad"
     tyre = TyreMesh(mesh, section, "file", float(np.hypot(*edges).max()), cell)
+    try:
+        _check_shapes(tyre)
+        _check_sizes(tyre, unit)
+    except InputError as error:
+        raise error.within(file=path) from None
+    return tyre
+
+
+def _check_shapes(tyre: TyreMesh) -> None:
+    """Raise an error for elements with a corner above 180 degrees or without a side: their integrals are wrong."""
+    bad = ~(tyre.corner_sines.min(axis=0) > 0)
+    if bad.any():
+        r, z = tyre.mesh.p[:, tyre.mesh.t[:, int(np.argmax(bad))]].mean(axis=1)
+        raise InputError(
+            f"{int(bad.sum())} of {tyre.n_elements} elements are folded, not convex or without area at a corner,"
+            f" as one near r = {r:.4g} m, z = {z:.4g} m"
+        )
+
+
+def _check_sizes(tyre: TyreMesh, unit: str) -> None:
+    """Compare areas and mean radii of the regions, and the symmetry's plane, with those of the section."""
+    section = tyre.section
     for region in section.regions:
-        ratio = tyre.area(region) / section.area(region)
+        area, radius = tyre.area(region), tyre.volume(region) / tyre.area(region) / (2 * np.pi)
+        ratio, of_section = area / section.area(region), section.volume(region) / section.area(region) / (2 * np.pi)
         if abs(ratio - 1) > AREA_TOLERANCE:
             raise InputError(
                 f"region '{region}' has {ratio:.4g} times the area it has in section '{section.name}':"
-                f" wrong unit ('{unit}'), a half for a full section, or another tyre",
-                file=path,
+                f" wrong unit ('{unit}'), a half for a full section, or another tyre"
             )
-    return tyre
+        if abs(radius / of_section - 1) > RADIUS_TOLERANCE:
+            raise InputError(
+                f"region '{region}' is at a mean radius of {radius * 1e3:.4g} mm, in section '{section.name}' at"
+                f" {of_section * 1e3:.4g} mm: r is from the wheel's axis; or another tyre"
+            )
+    if section.half:
+        off = np.abs(tyre.mesh.p[1, tyre.mesh.facets[:, tyre.mesh.boundaries["symmetry"]]]).max()
+        if off > PLANE:
+            raise InputError(f"boundary 'symmetry' is not at z = 0: up to {off * 1e3:.4g} mm from it")
 
 
 def write(mesh: Any, path: str | Path) -> Path:
