@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shlex
 from collections.abc import Callable
 from pathlib import Path
 
@@ -30,6 +31,19 @@ def test_a_new_plugin_passes_its_check(folder: Path, kind: str, capfd: pytest.Ca
     assert f"[{folder / 'my_own.py'}]" in capfd.readouterr().out
     assert main(["new", kind, "my-own"]) == 2
     assert "the file exists already" in capfd.readouterr().err
+
+
+def test_the_lines_to_copy_hold_in_a_folder_with_a_blank(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """As a shell reads them: one path, not two words."""
+    folder = tmp_path / "my tyres"
+    folder.mkdir()
+    monkeypatch.chdir(folder)
+    assert main(["new", "effect", "--out", "my plugins/lamp.py"]) == 0
+    _, check, export = capfd.readouterr().out.splitlines()
+    assert shlex.split(check)[-1] == "my plugins/lamp.py"
+    assert shlex.split(export)[-1] == f"TYREFEM_PLUGINS={folder / 'my plugins'}"
 
 
 @pytest.mark.parametrize("kind", TEMPLATES)

@@ -122,3 +122,10 @@ def test_bounds_are_named():
         positive("0 m")
     with pytest.raises(InputError, match="must be at most 1 m"):
         positive("1.01 m")
+
+
+@pytest.mark.parametrize("text", ["60,5 s", "1,200 s", "0,5s"])
+def test_a_comma_in_a_number_is_named(text: str) -> None:
+    """Where a decimal comma is usual, ',5 s is not a unit' told nothing."""
+    with pytest.raises(InputError, match=r"has a comma; numbers have a decimal point"):
+        parse(text, "s")

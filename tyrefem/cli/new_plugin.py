@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shlex
 from pathlib import Path
 
 from tyrefem.cli.shell import answer_with, say
@@ -34,6 +35,6 @@ def new_plugin(kind: str, name: str, out: Path | None, *, force: bool) -> None:
     answer_with({"kind": kind, "file": target})
     say(
         f"{target} written, the {kind.replace('-', ' ')} '{name}'",
-        f"edit it, then: tyrefem check {target}",
-        f"studies know it by: export TYREFEM_PLUGINS={target.parent.resolve()}",
+        f"edit it, then: tyrefem check {shlex.quote(str(target))}",
+        f"studies know it by: export TYREFEM_PLUGINS={shlex.quote(str(target.parent.resolve()))}",
     )

@@ -183,6 +183,8 @@ def _unit_text(units: Any) -> str:
 def _convert(magnitude: float, text: str, unit: str, value: object, wanted: str) -> float:
     if len(text) > 60:
         raise InputError(f"{text[:60]!r}... is not a unit; expected {wanted}")
+    if re.match(r",\d", text):
+        raise InputError(f"{value!r} has a comma; numbers have a decimal point; expected {wanted}")
     if not _UNIT.fullmatch(text) or re.search(r"\)\s*(?:\*\*|\^)", text):
         raise InputError(f"'{text}' in {value!r} is not a unit; expected {wanted}")
     try:
