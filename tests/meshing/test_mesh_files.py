@@ -306,3 +306,19 @@ def test_elements_that_would_give_wrong_integrals_are_refused(
     path = changed(tyre, tmp_path / "tyre.msh", change)
     with pytest.raises(InputError, match=words):
         read_for(section, path)
+
+
+def test_further_sets_of_a_program_are_left_out(tmp_path: Path) -> None:
+    """Abaqus files name each part by its surface, its material and in a set of all; the section's names are enough."""
+    path = tmp_path / "square.inp"
+    path.write_text(
+        "*NODE\n1, 0., 0., 0.\n2, 1., 0., 0.\n3, 2., 0., 0.\n4, 0., 1., 0.\n5, 1., 1., 0.\n6, 2., 1., 0.\n"
+        "*ELEMENT, TYPE=CPS4, ELSET=Surface1\n1, 1, 2, 5, 4\n2, 2, 3, 6, 5\n"
+        "*ELSET, ELSET=LEFT\n1\n*ELSET, ELSET=RIGHT\n2\n*ELSET, ELSET=EALL\n1, 2\n"
+        "*NSET, NSET=SKIN\n1, 2, 3, 4, 5, 6\n*NSET, NSET=NALL\n1, 2, 3, 4, 5, 6\n"
+    )
+    mesh = read(path, unit="mm", regions=["LEFT", "RIGHT"], boundaries=["SKIN"])
+    assert set(mesh.subdomains) == {"LEFT", "RIGHT"}
+    assert set(mesh.boundaries) == {"SKIN"}
+    with pytest.raises(InputError, match="2 of 2 elements belong to more than one region"):
+        read(path, regions=["LEFT"])

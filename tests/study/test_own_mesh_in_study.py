@@ -9,8 +9,10 @@ import numpy as np
 import pytest
 
 import tyrefem as tf
+from tyrefem.cli import main
 from tyrefem.errors import InputError
 from tyrefem.geometry import meshing
+from tyrefem.library import find
 
 SHORT = {"drive.duration": "60 s", "mesh.size": "4 mm", "mesh.element": "P1"}
 
@@ -46,3 +48,31 @@ def test_a_mesh_without_the_line_that_a_strain_law_needs_names_its_file(tmp_path
     mesh.write(file)
     with pytest.raises(InputError, match=r"mesh\.file: the mesh has no line at s = 56\.0683 mm; elements.*'arcs'"):
         study.replace({"mesh.file": str(file)}).run()
+
+
+def test_a_check_reads_the_mesh_file(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    """A study without its mesh was in order, and every variant of its sweep failed."""
+    text = find("study", "nasa-22x5.5-8pr").read_text(encoding="utf-8")
+    (tmp_path / "study.toml").write_text(text + '\n[mesh]\nfile = "mine.msh"\n', encoding="utf-8")
+    assert main(["check", str(tmp_path)]) == 2
+    assert capfd.readouterr().err == f"tyrefem: {tmp_path / 'mine.msh'}: no such mesh file\n"
+
+
+@pytest.mark.parametrize("cell", ["quad", "tri"])
+def test_an_unfit_mesh_is_no_fault_of_the_drive(tmp_path: Path, cell: str) -> None:
+    """The finite-element laws named 'drive.mesh.cell', and 'drive' for a file that is not there."""
+    study = tf.study("nasa-22x5.5-8pr", {**SHORT, "mesh.cell": "tri", "mechanics.strain": "barrel"})
+    file = tmp_path / "mine.msh"
+    if cell == "tri":
+        meshing.write(study.mesh(), file)
+    with pytest.raises(InputError) as error:
+        study.replace({"mesh": {"file": str(file)}}).run()
+    assert error.value.field == ("mesh.cell" if cell == "tri" else None)
+
+
+def test_a_size_beside_a_mesh_file_is_warned_of(tmp_path: Path) -> None:
+    study = tf.study("nasa-22x5.5-8pr", SHORT)
+    file = meshing.write(study.mesh(), tmp_path / "mine.msh")
+    (warning,) = study.replace({"mesh.file": str(file)}).warnings
+    assert (warning.field, warning.message) == ("mesh", "not read, as the mesh comes from mesh.file: size")
+    assert not study.replace({"mesh": {"file": str(file), "element": "P1"}}).warnings

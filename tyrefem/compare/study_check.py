@@ -15,9 +15,12 @@ def check_study(study: StudyData) -> int:
 
     Raises
     ------
-    InputError : an impossible load, a missing uncertain number, a wrong drive of a measured table, a missing table, run
-        or column; the study's own run is none of the measured ones.
+    InputError : a mesh file that is missing or does not suit the section; an impossible load, a missing uncertain
+        number, a wrong drive of a measured table, a missing table, run or column; the study's own run is none of the
+        measured ones.
     """
+    if study.card.mesh.file is not None:
+        study.mesh()
     check_cases(study)
     for key in study.card.uncertainty:
         try:

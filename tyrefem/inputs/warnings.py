@@ -26,6 +26,7 @@ def study_warnings(
     ['materials.tread.density.value']
     """
     warnings = [*card.warnings(), *_of_another_tyre(card, section), *_of_driven_temperatures(card)]
+    warnings += _of_mesh_file(card)
     warnings += [warning.within(field="section") for warning in section.warnings]
     warnings += [*_of_materials(materials), *_of_crown_angles(card, section, materials)]
     if card.mechanics.energy is not None:
@@ -55,6 +56,13 @@ def _of_driven_temperatures(card: StudyCard) -> Iterator[InputWarning]:
                 f"is not read: every phase of the drive has '{key}', which goes before it; remove either",
                 field=f"boundaries.{side}.temperature",
             )
+
+
+def _of_mesh_file(card: StudyCard) -> Iterator[InputWarning]:
+    """Numbers of a mesher beside a mesh from a file: a finer size would change nothing."""
+    idle = [key for key in ("mesher", "size", "cell", "through") if key in card.mesh.model_fields_set]
+    if card.mesh.file is not None and idle:
+        yield InputWarning(f"not read, as the mesh comes from mesh.file: {', '.join(idle)}", field="mesh")
 
 
 def _of_crown_angles(

@@ -318,6 +318,10 @@ class KnotSolver:
         return solved_case(cycle, case), cycle
 
     def _placed(self, error: InputError, number: int) -> InputError:
+        """The error with its phase, unless it is of another file or of another table of the study, as ``mesh.cell``."""
+        table = (error.field or "").partition(".")[0]
+        if error.file or table in type(self.study.card).model_fields:
+            return error.within(file=self.study.file)
         name = self.study.card.drive.phases[number].name
         return self.study.as_written(error.within(field=f"drive.phases.{name}", file=self.study.file))
 

@@ -117,7 +117,7 @@ def named_from(
         cell data, or (boundaries only) point sets.
     points : (n, 2) coordinates to use instead of the file's first two.
     names : names in the file -> new names.
-    regions, boundaries : required names.
+    regions, boundaries : required names; where they name every part once, further groups are left out.
 
     Raises
     ------
@@ -145,6 +145,7 @@ def named_from(
     _known_names(raw, names)
     points = raw.points[:, :2] if points is None else points
     regions_found = {name: np.unique(np.concatenate(parts)) for name, parts in faces.items()}
+    regions_found = _without_further(regions_found, regions, len(elements))
     _check_membership(regions_found, len(elements), "element", "region")
     _required(regions, regions_found, "region")
     try:
@@ -172,11 +173,20 @@ def named_from(
     named = {name: facets for name, facets in named.items() if len(facets)}
     _required(boundaries, named, "boundary")
     places = {name: np.searchsorted(surface, facets) for name, facets in named.items()}
+    places = _without_further(places, boundaries, len(surface))
     try:
         _check_membership(places, len(surface), "side of the surface", "boundary", mesh.p[:, mesh.facets[0, surface]])
     except InputError as error:
         raise InputError(f"{error.message}{_coincident(points)}") from None
-    return mesh.with_boundaries(named)
+    return mesh.with_boundaries({name: named[name] for name in places})
+
+
+def _without_further(groups: Mapping[str, Indices], required: Iterable[str], count: int) -> Mapping[str, Indices]:
+    """The required groups alone if every element or facet is in one of them: programs write sets of all elements, of
+    single surfaces and of materials beside them."""
+    kept = {name: groups[name] for name in required if name in groups}
+    times = np.bincount(np.concatenate([np.zeros(0, dtype=np.int64), *kept.values()]), minlength=count)
+    return kept if kept and (times == 1).all() else groups
 
 
 def _groups(raw: Any) -> Iterable[tuple[str, int, Indices]]:

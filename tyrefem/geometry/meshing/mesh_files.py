@@ -53,7 +53,8 @@ def read(
     names : names in the file -> new names.
     axes : indices of (r, z): ``"rz"`` and ``"xy"`` for the first two, ``"zr"`` for the second and the first.
     unit : unit of the coordinates, e.g. ``"mm"``.
-    regions, boundaries : required names; every element and every surface facet must belong to one.
+    regions, boundaries : required names; every element and every surface facet must belong to one. Further groups are
+        left out where these name every part.
 
     Raises
     ------
