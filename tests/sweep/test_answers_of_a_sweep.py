@@ -202,6 +202,9 @@ def test_tornado_moves_every_number_alone(tyre: Study) -> None:
     assert table["range"].is_monotonic_decreasing
     assert table["nominal"].iloc[0] == pytest.approx(tyre.run().history.maximum.temperature, abs=1e-6)
     assert "depends most on materials." in answer.words[0]
+    first, second, *_ = repr(answer).splitlines()
+    assert first == "Which tolerance matters", "a notebook shows the sentences, not the fields of a dataclass"
+    assert second.startswith("  The highest temperature, ")
 
 
 def test_tornado_takes_the_tolerances_that_cards_state(tyre: Study) -> None:
@@ -270,6 +273,8 @@ def test_optimum_of_a_bowl(tyre: Study) -> None:
     assert len(answer.table) <= 600
     assert answer.table["best_so_far"].is_monotonic_decreasing
     assert answer.table["best_so_far"].iloc[-1] == answer.full["hottest_degC"]
+    assert repr(answer).startswith("Optimum\n  Smallest highest temperature: ")
+    assert len(repr(answer)) < 800
 
 
 def test_optimum_keeps_its_limits(tyre: Study) -> None:

@@ -15,6 +15,7 @@ from tyrefem.inputs.changes import scaled, value_at
 from tyrefem.inputs.study import StudyData
 from tyrefem.quantity import parse
 from tyrefem.sweep.evaluation import Evaluator
+from tyrefem.sweep.part import InSentences
 from tyrefem.sweep.question import SweepQuestion
 from tyrefem.variants.answer_units import name_of, shown
 from tyrefem.variants.answers import check_answer, check_sensor_names
@@ -179,8 +180,8 @@ ROUNDS = 14
 EXPECTED = 7
 
 
-@dataclass(frozen=True, eq=False)
-class Envelope:
+@dataclass(frozen=True, eq=False, repr=False)
+class Envelope(InSentences):
     """The largest safe speeds of a tyre.
 
     Parameters

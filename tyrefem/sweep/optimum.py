@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from tyrefem.brief import counted
 from tyrefem.sweep.evaluation import Evaluator
+from tyrefem.sweep.part import InSentences
 from tyrefem.sweep.sweep import Sweep
 from tyrefem.variants.answer_units import difference_unit, name_of, shown
 from tyrefem.variants.answers import NEVER, check_answer
@@ -161,8 +162,8 @@ def _beyond(value: float, bound: float) -> float:
 CANDIDATES = 5
 
 
-@dataclass(frozen=True, eq=False)
-class Optimum:
+@dataclass(frozen=True, eq=False, repr=False)
+class Optimum(InSentences):
     """Result of a search.
 
     Parameters

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.errors import InputError, nearest
+from tyrefem.sweep.part import InSentences
 from tyrefem.variants.answers import NEVER
 
 if TYPE_CHECKING:
@@ -70,8 +71,8 @@ def front(table: pd.DataFrame, aims: Mapping[str, str] | None = None) -> pd.Data
     return feasible[undominated(signed)].sort_values(next(iter(aims)))
 
 
-@dataclass(frozen=True, eq=False)
-class ParetoFront:
+@dataclass(frozen=True, eq=False, repr=False)
+class ParetoFront(InSentences):
     """The Pareto front of a sweep; ``aims`` as in `front`."""
 
     swept: Sweep

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Protocol
 
+from tyrefem.brief import LINES, cut
+
 if TYPE_CHECKING:
     import pandas as pd
 
@@ -31,3 +33,19 @@ class DesignPart(Protocol):
     def to_dict(self) -> dict[str, Any]:
         """Content for JSON."""
         ...
+
+
+class InSentences:
+    """A part whose `repr` is its heading and its sentences, as a notebook shows them."""
+
+    heading: str
+
+    @property
+    def words(self) -> list[str]:
+        """The answer in sentences."""
+        raise NotImplementedError
+
+    def __repr__(self) -> str:
+        rows = self.words
+        shown = rows if len(rows) < LINES else [*rows[: LINES - 2], f"... and {len(rows) - LINES + 2} more"]
+        return "\n".join([self.heading, *(cut(f"  {row}") for row in shown)])

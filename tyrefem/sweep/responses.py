@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tyrefem.sweep.part import InSentences
 from tyrefem.sweep.sweep import Sweep
 from tyrefem.variants.answer_units import difference_unit, name_of, shown
 from tyrefem.variants.answers import NEVER, TIME_TO
@@ -167,8 +168,8 @@ def _value(value: Any) -> str:
     return f"{value:.4g}" if isinstance(value, int | float | np.number) else str(value)
 
 
-@dataclass(frozen=True, eq=False)
-class Responses:
+@dataclass(frozen=True, eq=False, repr=False)
+class Responses(InSentences):
     """Answers of a sweep and their main effects; ``wanted``: the answers in pictures and tables."""
 
     swept: Sweep

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tyrefem.errors import InputError
+from tyrefem.sweep.part import InSentences
 from tyrefem.sweep.sweep import Sweep
 from tyrefem.variants.answer_units import name_of
 from tyrefem.variants.samples import problem
@@ -62,8 +63,8 @@ def indices(swept: Sweep, answer: str) -> pd.DataFrame:
     return table.sort_values("total", ascending=False, ignore_index=True)
 
 
-@dataclass(frozen=True, eq=False)
-class Indices:
+@dataclass(frozen=True, eq=False, repr=False)
+class Indices(InSentences):
     """Sobol indices of some answers of a sweep over Saltelli's sample."""
 
     swept: Sweep

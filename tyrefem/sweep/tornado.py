@@ -12,6 +12,7 @@ from tyrefem.errors import InputError
 from tyrefem.inputs.changes import check_factor
 from tyrefem.inputs.study import StudyData
 from tyrefem.inputs.uncertain_numbers import UncertainNumber, left_out, uncertain_number
+from tyrefem.sweep.part import InSentences
 from tyrefem.sweep.question import SweepQuestion
 from tyrefem.sweep.responses import judged
 from tyrefem.sweep.sweep import Sweep, sweep
@@ -97,8 +98,8 @@ def tornado_plan(
     return Plan(study, (), tuple(variants), tuple(names), {}, time_to, sampling)
 
 
-@dataclass(frozen=True, eq=False)
-class Tornado:
+@dataclass(frozen=True, eq=False, repr=False)
+class Tornado(InSentences):
     """Effect of every tolerance alone on the answers.
 
     Parameters
