@@ -72,6 +72,27 @@ def test_effects_on_the_heat_are_refused(tmp_path):
         export(study, tmp_path / "tyre.npz")
 
 
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"drive.slip_angle": "2 deg"}, "drive: a real-time model has no slip, torque or camber: remove 'slip_angle'"),
+        ({"mechanics.feedback.pressure": True}, "mechanics.feedback: a real-time model has no feedback"),
+        ({"effects": [{"name": "sun", "absorbed": "200 W/m**2"}]}, "effects.sun: gives heat to a surface; a real-time"),
+        ({"effects": [{"name": "radiation", "emissivity": 0.5}]}, "effects.radiation: radiates"),
+        ({"effects": [{"name": "standing-wave", "gain": 1.0}]}, "effects.standing-wave: changes the heat source"),
+    ],
+)
+def test_what_the_file_tells_is_refused_before_any_run(changes, message, tmp_path, monkeypatch):
+    """It came after the training runs, as "Flux at 'road'": on a footprint by finite elements, after many minutes."""
+    monkeypatch.setattr("tyrefem.realtime.certificate._Training", pytest.fail)
+    monkeypatch.setattr("tyrefem.realtime.box_model.Training", pytest.fail)
+    study = tyrefem.study(STUDY, {"mesh.size": "12 mm", **changes})
+    for refused in (lambda: export(study, tmp_path / "tyre.npz"), study.explore):
+        with pytest.raises(InputError) as error:
+            refused()
+        assert message in str(error.value)
+
+
 def test_a_box_without_width_no_sensors_held_air_and_a_tolerance_that_cannot_be_met(needs_compiler, tmp_path):
     settings = ExportSettings(TablePoints(5, 4, 4), training=1, fresh=1, rounds=1)
     held = {"law": "held", "temperature": "35 degC"}

@@ -26,6 +26,7 @@ from tyrefem.realtime.setting_arrays import rounded, setting_arrays, step_arrays
 from tyrefem.realtime.setting_solution import Solution
 from tyrefem.realtime.setting_tyre import SettingTyre
 from tyrefem.realtime.settings import FEWEST, TablePoints
+from tyrefem.realtime.suitability import check_suitable
 from tyrefem.realtime.tables import Probe
 from tyrefem.realtime.tyre import STANDSTILL
 from tyrefem.reduced.model import NotReducibleError, ReducedModel
@@ -258,6 +259,7 @@ POSSIBLE = (
 def check_explored(plan: Plan, tolerance: float) -> None:
     """Raise `InputError` if a plan's box cannot be explored."""
     NEEDS.check(plan.study)
+    check_suitable(plan.study)
     for number in plan.varied:
         table, last = number.key.split(".")[0], number.key.rpartition(".")[2]
         field = f"vary.{number.key}"

@@ -19,6 +19,7 @@ from tyrefem.inputs.study import StudyData
 from tyrefem.realtime.export import arrays_of, outputs_of, write
 from tyrefem.realtime.inputs import NAMES, Box, BoxDrive, box_of, random_drive, steady
 from tyrefem.realtime.settings import ExportSettings
+from tyrefem.realtime.suitability import check_suitable
 from tyrefem.realtime.tables import Probe
 from tyrefem.realtime.tyre import STANDSTILL, RealTimeTyre
 from tyrefem.reduced.balance import reduced_balance
@@ -185,8 +186,7 @@ def export(
         study; the tolerance was not reached, or is below `numerics.tolerance`; the memory is too small.
     """
     NEEDS.check(study)
-    if study.card.mechanics.feedback is not None:
-        raise InputError("a real-time model has no feedback of temperature on the strain cycle", field="mechanics")
+    check_suitable(study)
     report = progress or (lambda what, done, total: None)
     scheduler, settings = scheduler or Here(), settings or ExportSettings()
     if tolerance < study.tolerance:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
 from tyrefem.quantity import parse
+from tyrefem.realtime.suitability import check_motion
 from tyrefem.realtime.tyre import INPUTS, Inputs
 
 Array = NDArray[np.float64]
@@ -21,8 +22,6 @@ FACTORS = {"speed": (0.0, 1.5), "load": (0.5, 1.25), "pressure": (0.8, 1.2)}
 AROUND = {"ambient": (-20.0, 20.0), "road_temperature": (-20.0, 40.0)}
 #: Keys of a study's drive that are the same in every drive of the box.
 KEPT = ("drum_diameter", "rim_temperature")
-#: Keys of a drive that a real-time model has not.
-MOTION = ("slip_ratio", "slip_speed", "slip_angle", "torque", "camber")
 #: Parts of a random drive at most, and the shortest part, s.
 PARTS, SHORTEST = 6, 20.0
 #: A ramp of load or pressure becomes so many phases of the study: within each the strain cycles are interpolated
@@ -196,11 +195,7 @@ def _written(first: Sequence[float], last: Sequence[float]) -> dict[str, Any]:
 def _kept(study: StudyData) -> dict[str, Any]:
     drive = study.data["drive"]
     phases = drive.get("phases", [{}])
-    if study.card.boundaries.sliding.rolls:
-        raise InputError("a real-time model has no friction of a rolling tyre", field="boundaries.sliding")
-    for key in (key for part in (drive, *phases) for key in part):
-        if key in MOTION:
-            raise InputError(f"a real-time model has no slip, torque or camber: remove '{key}'", field="drive")
+    check_motion(study)
     kept = {**{key: drive[key] for key in KEPT if key in drive}}
     for phase in phases:
         for key in KEPT:

@@ -149,7 +149,7 @@ def reduced_balance(model: ReducedModel, tyre: RollingTyre) -> ReducedBalance:
         or effects with states.
     """
     if tyre.study.card.mechanics.feedback is not None and tyre.cycles is None:
-        raise NotReducibleError("strain cycles that follow the temperature")
+        raise NotReducibleError("strain cycles that follow the temperature need full runs")
     if tyre.acting.with_states:
         names = ", ".join(f"'{effect.name}'" for effect in tyre.acting.with_states)
         raise NotReducibleError(f"a reduced model cannot follow effects with states: {names}")
@@ -168,7 +168,8 @@ def reduced_balance(model: ReducedModel, tyre: RollingTyre) -> ReducedBalance:
     for side, conditions in tyre.boundaries.items():
         for number, condition in enumerate(conditions):
             if not isinstance(condition, Film):
-                raise NotReducibleError(f"{type(condition).__name__} at '{side}'")
+                kind = {"Flux": "given heat", "Radiation": "radiation"}.get(type(condition).__name__, "a condition")
+                raise NotReducibleError(f"a reduced model has films only: it cannot follow {kind} at '{side}'")
             films.append((side, number, condition))
     reservoirs = tyre._reservoirs()
     for name, reservoir in reservoirs.items():

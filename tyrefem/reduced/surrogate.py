@@ -271,4 +271,4 @@ def check_varied(plan: Plan) -> None:
             if key.split(".")[0] in ("mesh", "output", "numerics"):
                 raise NotReducibleError(f"'{key}' changes the mesh or the numerical precision")
     if plan.study.card.mechanics.feedback is not None:
-        raise NotReducibleError("strain cycles that follow the temperature")
+        raise NotReducibleError("strain cycles that follow the temperature need full runs")
