@@ -163,6 +163,12 @@ def test_an_input_outside_the_box_is_told_in_the_units_of_the_description(unit, 
             instance.doStep(0.0, 1.0)
         assert messages[-1].startswith(f"{name} = {value:.7g} {kinds[name]} is outside ")
         assert messages[-1].endswith(f" {kinds[name]}, the certified range")
+    # What is no number has no edge, also where inputs are moved to theirs.
+    instance.setBoolean([6], [True])
+    instance.setReal([0], [np.nan])
+    with pytest.raises(Exception, match="fmi2DoStep"):
+        instance.doStep(0.0, 1.0)
+    assert messages[-1].endswith(f" {kinds['speed']}, the certified range")
     instance.freeInstance()
 
 

@@ -1,5 +1,5 @@
-/* A tyre's temperatures as an FMI 2.0 co-simulation unit: the same arithmetic as tyrefem/realtime.py, nothing else needed.
-   tyre_data.h holds the numbers of one tyre. Standard C99; link with the mathematics library. */
+/* A tyre's temperatures as an FMI 2.0 co-simulation unit: the same arithmetic as tyrefem/realtime/tyre.py, nothing
+   else needed. tyre_data.h holds the numbers of one tyre. Standard C99; link with the mathematics library. */
 #include <math.h>
 #include <stddef.h>
 #include <stdio.h>
@@ -459,7 +459,7 @@ EXPORT fmi2Status FMI(fmi2DoStep)(fmi2Component c, fmi2Real now, fmi2Real dt, fm
             double value = s->inputs[i] + k * dt * s->slope[i];
             if (!(value >= low - near && value <= high + near)) {
                 snprintf(text, sizeof text, "%s = %.7g %s is outside %.7g to %.7g %s, the certified range%s", names[i],
-                         value, units[i], low, high, units[i], s->clamp ? "; its edge is taken" : "");
+                         value, units[i], low, high, units[i], s->clamp && !isnan(value) ? "; its edge is taken" : "");
                 if (!s->clamp || isnan(value)) {
                     say(t, fmi2Error, text);
                     return fmi2Error;
