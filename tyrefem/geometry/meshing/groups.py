@@ -181,7 +181,7 @@ def named_from(
     return mesh.with_boundaries({name: named[name] for name in places})
 
 
-def _without_further(groups: Mapping[str, Indices], required: Iterable[str], count: int) -> Mapping[str, Indices]:
+def _without_further(groups: dict[str, Indices], required: Iterable[str], count: int) -> dict[str, Indices]:
     """The required groups alone if every element or facet is in one of them: programs write sets of all elements, of
     single surfaces and of materials beside them."""
     kept = {name: groups[name] for name in required if name in groups}
