@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from pathlib import Path
 from typing import Any
 
@@ -142,7 +143,9 @@ def test_the_command_writes_films_with_standard_deviations(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     assert main(["thermal-card", str(SHIPPED.parent)]) == 0
-    assert "conductance gas-rim" in capsys.readouterr().out
+    printed = capsys.readouterr().out
+    assert "conductance gas-rim" in printed
+    assert re.search(r"heat capacity tread +601\d \+- 33\d +J/K", printed), "hundreds without an exponent"
     folder = tmp_path / "results/thermal-passenger-thermal"
     card = read_toml(folder / "thermal-card.toml")
     assert card["conductance"]["carcass-gas"]["film"].endswith("W/m**2/K")

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tyrefem.output import atomic_folder, write_json
+from tyrefem.reports.words import number
 
 if TYPE_CHECKING:
     from tyrefem.lumped.identification import LumpedIdentification
@@ -23,7 +24,7 @@ def write_files(identified: LumpedIdentification, folder: Path, *, pictures: boo
         write_json(identified.to_dict(), place / "thermal-card.json")
         (place / "thermal-card.toml").write_text(tomli_w.dumps(_card(identified)), encoding="utf-8")
         heading = ["name", "unit", "value", "sd", "area_m2", "per_area", "per_area_sd", "verdict"]
-        _csv(place / "numbers.csv", heading, [number.to_dict() for number in identified.numbers])
+        _csv(place / "numbers.csv", heading, [row.to_dict() for row in identified.numbers])
         _csv(place / "measured.csv", list(identified.rows[0]), identified.rows)
         if pictures:
             from tyrefem.reports.figures.style import png
@@ -43,16 +44,16 @@ def _card(identified: LumpedIdentification) -> dict[str, Any]:
     tables: dict[str, Any] = {"title": identified.card.title, "misfit": round(identified.misfit, 3)}
     if identified.words:
         tables["words"] = list(identified.words)
-    for number in identified.numbers:
+    for row in identified.numbers:
         entry: dict[str, Any] = {
-            "value": f"{number.value:.5g} {number.unit}".removesuffix(" 1"),
-            "sd": f"{number.sd:.2g} {number.unit}".removesuffix(" 1"),
+            "value": f"{row.value:.5g} {row.unit}".removesuffix(" 1"),
+            "sd": f"{row.sd:.2g} {row.unit}".removesuffix(" 1"),
         }
-        if number.area is not None:
-            unit = "W/m**2/K" if number.unit == "W/K" else "W*s/m**3/K"
-            entry["film"] = f"{number.value / number.area:.5g} {unit}"
-            entry["film_sd"] = f"{number.sd / number.area:.2g} {unit}"
-        kind, _, name = number.name.partition(" ")
+        if row.area is not None:
+            unit = "W/m**2/K" if row.unit == "W/K" else "W*s/m**3/K"
+            entry["film"] = f"{row.value / row.area:.5g} {unit}"
+            entry["film_sd"] = f"{row.sd / row.area:.2g} {unit}"
+        kind, _, name = row.name.partition(" ")
         if kind == "heat":
             kind, _, name = name.partition(" ")
             kind = f"heat_{kind}"
@@ -63,13 +64,11 @@ def _card(identified: LumpedIdentification) -> dict[str, Any]:
 def words(identified: LumpedIdentification) -> str:
     """Lines of text."""
     lines = [identified.card.title]
-    for number in identified.numbers:
-        film = (
-            "" if number.area is None else f"   film {number.value / number.area:.4g} +- {number.sd / number.area:.2g}"
-        )
-        film += {"": "", "W/K": " W/m2/K", "W s/m/K": " W s/m3/K"}[number.unit if film else ""]
-        doubt = "" if number.verdict == "determined" else f"   {number.verdict}"
-        lines.append(f"  {number.name:36} {number.value:10.4g} +- {number.sd:<8.2g} {number.unit}{film}{doubt}")
+    for row in identified.numbers:
+        film = "" if row.area is None else f"   film {row.value / row.area:.4g} +- {number(row.sd / row.area, 2)}"
+        film += {"": "", "W/K": " W/m2/K", "W s/m/K": " W s/m3/K"}[row.unit if film else ""]
+        doubt = "" if row.verdict == "determined" else f"   {row.verdict}"
+        lines.append(f"  {row.name:36} {row.value:10.4g} +- {number(row.sd, 2):<8} {row.unit}{film}{doubt}")
     lines.append(f"  misfit per degree of freedom {identified.misfit:.2f} (1: as the stated standard deviations)")
     lines += [f"  {text}" for text in identified.words]
     return "\n".join(lines)
@@ -81,8 +80,8 @@ def _figure(identified: LumpedIdentification) -> Any:
 
     drawn = figure(9.0, 3.8 + TITLE)
     names = list(identified.card.bodies)
-    for number, (kinds, unit) in enumerate(((("plateau",), "degC"), (("warm_up", "cool_down"), "s"))):
-        axes = add_axes(drawn, 0.75 + 4.5 * number, 0.6, 3.5, 3.0)
+    for place, (kinds, unit) in enumerate(((("plateau",), "degC"), (("warm_up", "cool_down"), "s"))):
+        axes = add_axes(drawn, 0.75 + 4.5 * place, 0.6, 3.5, 3.0)
         rows = [row for row in identified.rows if row["quantity"] in kinds]
         for row in rows:
             marker = "o" if row["quantity"] != "cool_down" else "s"
@@ -98,9 +97,9 @@ def _figure(identified: LumpedIdentification) -> Any:
         axes.set_ylabel(f"computed [{unit}]", fontsize=FONT)
         axes.set_title("plateaus" if unit == "degC" else "times: o warm-up, □ cool-down", fontsize=FONT, loc="left")
         tidy(axes)
-    for number, name in enumerate(names):
-        drawn.text(0.62 + 0.12 * (number % 3), 0.965 - 0.04 * (number // 3), f"● {name}", fontsize=FONT,
-                   color=PALETTE[number % len(PALETTE)])  # fmt: skip
+    for place, name in enumerate(names):
+        drawn.text(0.62 + 0.12 * (place % 3), 0.965 - 0.04 * (place // 3), f"● {name}", fontsize=FONT,
+                   color=PALETTE[place % len(PALETTE)])  # fmt: skip
     title(
         drawn, "Lumped tyre: computed over measured", f"bars: two standard deviations; misfit {identified.misfit:.2f}"
     )
