@@ -244,6 +244,14 @@ def test_a_mesh_in_another_place_is_refused(
     assert error.value.file == path
 
 
+def test_a_whole_section_lies_about_its_mid_plane(section: Section, tmp_path: Path) -> None:
+    """As drawn from one side of the tyre on: areas and radii are right, all places are not."""
+    whole = section.as_full()
+    path = changed(build(whole, size=5e-3), tmp_path / "tyre.msh", moved(z=0.079))
+    with pytest.raises(InputError, match=r"its middle is at z = 79 mm: z is from the mid plane of the tyre"):
+        read_for(whole, path)
+
+
 def inner_element(content: meshio.Mesh) -> tuple[int, NDArray[np.int64]]:
     """An element without a node on the surface, and its nodes."""
     inside = ~np.isin(content.cells[0].data, content.cells[1].data).any(axis=1)

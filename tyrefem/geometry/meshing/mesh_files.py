@@ -22,7 +22,8 @@ from tyrefem.quantity import parse
 AXES = {"rz": (0, 1), "zr": (1, 0), "xy": (0, 1), "yz": (1, 2), "zy": (2, 1), "xz": (0, 2), "zx": (2, 0)}
 #: Largest difference of a region's area between a mesh and its section, over the area.
 AREA_TOLERANCE = 0.1
-#: Largest difference of a region's mean radius, over the radius: an estimate.
+#: Largest difference of a region's mean radius over the radius, and of a whole section's middle over the width: an
+#: estimate.
 RADIUS_TOLERANCE = 0.02
 #: m; largest distance of the symmetry's nodes from the mid plane, as of rounded coordinates: an estimate.
 PLANE = 1e-5
@@ -147,6 +148,10 @@ def _check_sizes(tyre: TyreMesh, unit: str) -> None:
         off = np.abs(tyre.mesh.p[1, tyre.mesh.facets[:, tyre.mesh.boundaries["symmetry"]]]).max()
         if off > PLANE:
             raise InputError(f"boundary 'symmetry' is not at z = 0: up to {off * 1e3:.4g} mm from it")
+        return
+    middle = float(tyre.mesh.p[1, tyre.mesh.t].mean(axis=0) @ tyre.element_areas / tyre.element_areas.sum())
+    if abs(middle) > RADIUS_TOLERANCE * section.overall_width:
+        raise InputError(f"its middle is at z = {middle * 1e3:.4g} mm: z is from the mid plane of the tyre")
 
 
 def write(mesh: Any, path: str | Path) -> Path:
