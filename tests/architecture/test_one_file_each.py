@@ -29,7 +29,7 @@ COPIES: dict[str, tuple[str, dict[str, str]]] = {
     "tyrefem/sweep/spread.py": (
         "tyrefem/sweep/tornado.py",
         {
-            "class TornadoQuestion": "class SpreadQuestion", "class Tornado:": "class Spread:",
+            "class TornadoQuestion": "class SpreadQuestion", "class Tornado(": "class Spread(",
             "Tornado.name": "Spread.name", "Tornado(": "Spread(", "-> Tornado:": "-> Spread:",
             'name = "tornado"': 'name = "spread"\n    drawn = False',
         },
