@@ -24,12 +24,11 @@ WRITTEN = (CONSTANT, BEGINS, ENDS)
 
 def source_unknown(study: StudyData, settings: DiagnosisSettings, place: Place, course: Course) -> Unknown:
     """The unknown of an effect `missing-heat` or `missing-flux` with the place and the course of a source."""
-    unknown = patch(study, settings, place.station, place.where)
     if course.time is None:
-        return unknown
-    begins = (course.kind, f"{round(float(course.time), 1)!r} s")
-    name = unknown.key.rpartition(".")
-    return replace(unknown, choice=(*unknown.choice, begins), key=f"{name[0]}.{course.kind} {begins[1]}.{name[2]}")
+        return patch(study, settings, place.station, place.where)
+    time = f"{round(float(course.time), 1)!r} s"
+    unknown = patch(study, settings, place.station, place.where, ((course.kind, time),))
+    return replace(unknown, key=unknown.key.replace(f".{time}.", f".{course.kind} {time}."))
 
 
 def values_with_sources(

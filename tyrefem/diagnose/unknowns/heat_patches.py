@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from tyrefem.diagnose.settings import DiagnosisSettings
-from tyrefem.diagnose.unknowns.unknown import Choice, Unknown, of_effect
+from tyrefem.diagnose.unknowns.unknown import Choice, Unknown, of_effect, stated_effect
 from tyrefem.effects import catalogue
 from tyrefem.inputs.study import StudyData
 
@@ -43,15 +43,21 @@ def stations(study: StudyData, settings: DiagnosisSettings) -> list[float]:
     return [round((number + 0.5) * spacing, 6) for number in range(settings.stations)]
 
 
-def patch(study: StudyData, settings: DiagnosisSettings, station: float, where: str) -> Unknown:
-    """The unknown heat or flux about a station."""
+def patch(study: StudyData, settings: DiagnosisSettings, station: float, where: str, when: Choice = ()) -> Unknown:
+    """The unknown heat or flux about a station, beyond what the study states there; ``when``: it begins or ends."""
     spacing = study.section.line.length / settings.stations
     choice: Choice = (("station", f"{station!r} m"), ("width", f"{round(spacing * 0.6, 6)!r} m"))
     if where in SURFACES:
         choice += () if where == OUTER else (("surface", SURFACES[where]),)
-        return of_effect(catalogue()["missing-flux"], choice, settings.missing_flux)[0]
+        return _beyond(study, "missing-flux", choice + when, settings.missing_flux)
     choice += () if where == ALL_LAYERS else (("region", where),)
-    return of_effect(catalogue()["missing-heat"], choice, settings.missing_heat)[0]
+    return _beyond(study, "missing-heat", choice + when, settings.missing_heat)
+
+
+def _beyond(study: StudyData, name: str, choice: Choice, sd: float) -> Unknown:
+    """A patch with its origin at the study's entry of the same choice, if there is one; its sd is that of any patch."""
+    stated = stated_effect(study, name, choice)
+    return of_effect(catalogue()[name], choice, sd, None if stated is None else stated.model_copy(update={"sd": {}}))[0]
 
 
 def place_of(unknown: Unknown) -> tuple[float, str]:

@@ -102,10 +102,16 @@ class Unknown:
         return {"name": self.effect, **dict(self.choice), **runs}
 
     def belongs_to(self, entry: Mapping[str, Any]) -> bool:
-        """Whether an entry of ``[[effects]]`` is this unknown's effect, with its choices and runs."""
-        same_runs = tuple(entry.get("runs", ())) == self.runs
-        # Choices may be written as numbers.
-        return same_runs and all(str(entry.get(key)) == value for key, value in self.entry.items() if key != "runs")
+        """Whether an entry of ``[[effects]]`` is this unknown's effect, with its choices and runs.
+
+        Choices are compared as the effect reads them: "32 mm" is "0.032 m", and a default may be left out.
+        """
+        if entry.get("name") != self.effect or tuple(entry.get("runs", ())) != self.runs:
+            return False
+        if not self.choice:
+            return True
+        stated = catalogue()[str(self.effect)].check({key: value for key, value in entry.items() if key != "name"})
+        return stated.choice == dict(self.choice)
 
     @property
     def measures(self) -> bool:
@@ -176,7 +182,7 @@ def base_unknowns(study: StudyData) -> tuple[Unknown, ...]:
     films: list[Unknown] = []
     for name in ("road", "outside_air", "contained_air", "rim"):
         choice = (("film", name),)
-        stated = _stated(study, "film-scale", choice)
+        stated = stated_effect(study, "film-scale", choice)
         films += of_effect(known["film-scale"], choice, study.card.diagnosis.film_sd, stated)
     fitted = [
         unknown
@@ -188,7 +194,7 @@ def base_unknowns(study: StudyData) -> tuple[Unknown, ...]:
     return (*numbers, *films, *(unknown for unknown in fitted if unknown.sd > 0))
 
 
-def _stated(study: StudyData, name: str, choice: Choice) -> Effect | None:
+def stated_effect(study: StudyData, name: str, choice: Choice) -> Effect | None:
     """The effect in all runs of the study; None if the study does not have it."""
     effects = (effect for effect in study.card.effects if not effect.runs)
     return next((each for each in effects if each.name == name and tuple(each.choice.items()) == choice), None)
@@ -203,7 +209,7 @@ def sensor_unknowns(study: StudyData, measured: set[str]) -> tuple[Unknown, ...]
             continue
         choice = (("sensor", name),)
         for effect, sd in zip(OF_SENSORS, (sensor.position_sd, sensor.lag_sd, sensor.accuracy), strict=True):
-            of_sensor = of_effect(known[effect], choice, sd, _stated(study, effect, choice))
+            of_sensor = of_effect(known[effect], choice, sd, stated_effect(study, effect, choice))
             unknowns += [unknown for unknown in of_sensor if unknown.sd > 0]
     return tuple(unknowns)
 
