@@ -15,7 +15,7 @@ from tyrefem.diagnose.heat.values import values_with_sources
 from tyrefem.diagnose.numbers import percent
 from tyrefem.diagnose.unknowns.heat_patches import ALL_LAYERS, INNER, OUTER
 from tyrefem.diagnose.unknowns.unknown import Unknown
-from tyrefem.diagnose.words.heat import course_words, inside_share, is_told
+from tyrefem.diagnose.words.heat import course_words, inside_share, is_told, source_amount
 
 Array = NDArray[np.float64]
 TIMES = np.linspace(15.0, 900.0, 60)
@@ -116,6 +116,29 @@ def test_a_source_in_one_run_only_is_said_to_be_that() -> None:
         "It acts in fast only",
         f"Probably it acts in fast only ({percent(shown.kinds[shown.kind])})",
     )
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_source_in_a_part_of_one_run_is_clear_where_it_acts(seed: int) -> None:
+    """Its mean over both runs hardly differs from zero, though the data show it: run and time stand with the amount."""
+    shown = source(readings([0.0 * after(0.0), 4.0 * (after(300.0) - after(500.0))], 0.06, ALL_LAYERS, seed), grid())
+    assert shown.kind == "free"
+    assert shown.gain > 100.0
+    assert shown.clear
+    assert shown.at is not None
+    run, time = shown.at
+    assert run == "fast"
+    assert 300.0 < time < 500.0
+    assert shown.amount == pytest.approx(4.0, abs=3 * shown.sd)
+    assert source_amount(shown).endswith(f"(run fast at {time:.0f} s)")
+
+
+def test_a_free_course_with_a_clear_mean_has_this_mean() -> None:
+    """Heat in two waves, in both runs."""
+    wave = 4.0 * (1 + np.sin(np.linspace(0.0, 4 * np.pi, 901)))
+    shown = source(readings([wave, wave], 0.06, ALL_LAYERS, 3), grid())
+    assert (shown.kind, shown.at) == ("free", None)
+    assert shown.clear
 
 
 def test_a_source_in_proportion_to_the_speed() -> None:

@@ -9,10 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.diagnose.heat.courses import BEGINS, ENDS
-from tyrefem.diagnose.numbers import amount
 from tyrefem.diagnose.unknowns.heat_patches import ALL_LAYERS, INNER, OUTER
 from tyrefem.diagnose.verdicts.verdict import PARTLY, UNEXPLAINED
-from tyrefem.diagnose.words.heat import is_told
+from tyrefem.diagnose.words.heat import is_told, source_amount
 from tyrefem.reports.diagnosis_heat import heat_course_figure
 from tyrefem.reports.diagnosis_sections import DIVERGING, draw_ground
 from tyrefem.reports.figures.canvas import Canvas, canvas
@@ -86,9 +85,7 @@ def _missing_map(d: DiagnosisData) -> Figure:
     section = d.original.section
     inside = not sources or any(source.inside for source in sources)
     through = not sources or not all(source.inside for source in sources)
-    written = [
-        (amount(source.amount, source.sd, "W/m**3" if source.inside else "W/m**2"), source) for source in sources
-    ]
+    written = [(source_amount(source), source) for source in sources]
     drawn = canvas(section, (), [text for text, _ in written], bars=inside + through)
     draw_ground(drawn)
     s = np.linspace(0.0, section.line.length, 241)

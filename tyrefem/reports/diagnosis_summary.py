@@ -8,11 +8,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tyrefem.diagnose.numbers import amount, correction_amount, correction_subject, percent
+from tyrefem.diagnose.numbers import correction_amount, correction_subject, percent
 from tyrefem.diagnose.verdicts.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, PARTLY, UNEXPLAINED
 from tyrefem.diagnose.words.discrepancy_record import effect_probability
 from tyrefem.diagnose.words.headline import QUESTIONS, corrections, headline, label
-from tyrefem.diagnose.words.heat import course_words, source_place
+from tyrefem.diagnose.words.heat import course_words, source_amount, source_place
 from tyrefem.diagnose.words.law import law_words
 from tyrefem.diagnose.words.result_tables import set_rows
 from tyrefem.diagnose.words.sentences import effect_amounts, effect_sentence, next_words, noise_words
@@ -132,7 +132,7 @@ def _missing(d: DiagnosisData) -> SummaryTable:
     rows = [
         (
             source_place(d, source),
-            amount(source.amount, source.sd, "W/m**3" if source.inside else "W/m**2"),
+            source_amount(source),
             _moves(source.move),
             course_words(source),
         )

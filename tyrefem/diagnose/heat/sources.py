@@ -20,6 +20,8 @@ Array = NDArray[np.float64]
 STATED = 0.9
 #: An amount is stated if it differs from zero by more than this many standard deviations.
 CLEAR = 2.0
+#: The strength of a free course is clear at a time beyond this many: two, shared by some 75 knots (estimate).
+CLEAR_AT_A_TIME = 3.5
 #: Sizes of a source, over its prior sd, that are equally probable where places are compared.
 SIZES = (1.0, 3.0, 10.0)
 #: A course whose response differs by less than this share from that of a constant source is no course of its kind.
@@ -48,6 +50,7 @@ class UnknownSource(Brief):
     Parameters
     ----------
     station, where, inside : most probable place. amount, sd : W/m3 or W/m2 at full strength, with the best course.
+    at : (run, time s) of the amount, where a free course is clear then, but not its mean; None: no such time.
     stations, depths : probability by station (m), and by where at the station.
     kind, kinds : most probable course, and the probability of every course.
     time, time_sd : of the switch or of the ramp's begin, s; NaN for another course.
@@ -71,6 +74,7 @@ class UnknownSource(Brief):
     strength_sd: tuple[Array, ...]
     gain: float
     move: Movement | None = None
+    at: tuple[str, float] | None = None
 
     @property
     def clear(self) -> bool:
@@ -171,6 +175,9 @@ def timed(
     amount, sd = _amount(data, place, best, others)
     _, loosest = max(by_kind[FREE], key=lambda entry: entry[0])
     strength, strength_sd = _over_time(data, place, loosest, others, grid)
+    at = None
+    if kind == FREE and abs(amount) <= CLEAR * sd and (peak := _clearest(grid, strength, strength_sd)):
+        amount, sd, at = peak
     stations: dict[float, float] = {}
     for (station, _), share in places.items():
         stations[station] = stations.get(station, 0.0) + share
@@ -179,7 +186,7 @@ def timed(
     gain = log_mean_exp([log_mean_exp([gain for gain, _ in tried]) for tried in by_kind.values()])
     source = UnknownSource(
         place.station, place.where, place.inside, amount, sd, stations, depths, kind, kinds, time, time_sd,
-        strength, strength_sd, gain,
+        strength, strength_sd, gain, at=at,
     )  # fmt: skip
     return source, best
 
@@ -204,6 +211,22 @@ def dated(
     best = of_kind[int(gains.argmax())]
     times = mean_time([course.time for course in of_kind], gains)
     return DatedSource(best, *times, *_amount(data, place, best, others))
+
+
+def _clearest(
+    grid: CourseGrid, strength: Sequence[Array], strength_sd: Sequence[Array]
+) -> tuple[float, float, tuple[str, float]] | None:
+    """Strength, sd, run and time (s) where a free course differs most from zero; None: nowhere clearly.
+
+    Heat that acts in a part of one run has a mean over all runs near zero.
+    """
+    peaks = []
+    for name, knots, means, spreads in zip(grid.names, grid.knots, strength, strength_sd, strict=True):
+        ratios = np.abs(means) / np.maximum(spreads, 1e-300)
+        n = int(np.argmax(ratios))
+        peaks.append((float(ratios[n]), float(means[n]), float(spreads[n]), (name, float(knots[n]))))
+    ratio, mean, sd, at = max(peaks)
+    return (mean, sd, at) if ratio > CLEAR_AT_A_TIME else None
 
 
 def told_courses(place: Place, grid: CourseGrid) -> Iterator[Course]:

@@ -14,12 +14,12 @@ from tyrefem.diagnose.beside.discrepancy import ENERGY, HEAT, READINGS
 from tyrefem.diagnose.fitting.materiality import Movement, largest_change
 from tyrefem.diagnose.fitting.pulls import Pull, improbable_pulls
 from tyrefem.diagnose.heat.sources import STATED, UnknownSource
-from tyrefem.diagnose.numbers import amount, correction_subject, correction_words, percent, run_words
+from tyrefem.diagnose.numbers import correction_subject, correction_words, percent, run_words
 from tyrefem.diagnose.unknowns.candidates import Candidate
 from tyrefem.diagnose.verdicts.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, PARTLY, RankedSet, certain_members
 from tyrefem.diagnose.words.discrepancy_record import possible_effects
 from tyrefem.diagnose.words.draft_effect import EFFECTS, draft_effects
-from tyrefem.diagnose.words.heat import course_words, source_place
+from tyrefem.diagnose.words.heat import course_words, source_amount, source_place
 from tyrefem.diagnose.words.partly import (
     besides_words,
     explaining_words,
@@ -292,11 +292,10 @@ def heat_clause(d: DiagnosisData, sources: Sequence[UnknownSource]) -> str:
         return "no place of missing heat is clear"
     first = sources[0]
     sign = "heat is missing" if first.amount > 0 else "the model has too much heat, cooling is missing,"
-    size = amount(first.amount, first.sd, "W/m**3" if first.inside else "W/m**2")
     course = course_words(first)
     course = f"; {course[0].lower()}{course[1:]}" if first.kinds[first.kind] >= STATED else ""
     more = f"; and {len(sources) - 1} more places" if len(sources) > 1 else ""
-    return f"{sign} {source_place(d, first)}: {size}{_moves(first.move)}{course}{more}"
+    return f"{sign} {source_place(d, first)}: {source_amount(first)}{_moves(first.move)}{course}{more}"
 
 
 def _moves(move: Movement | None) -> str:

@@ -9,7 +9,7 @@ import numpy as np
 
 from tyrefem.diagnose.heat.courses import BEGINS, CONSTANT, ENDS, FREE, GROWS, PHASE, RUN, SPEED
 from tyrefem.diagnose.heat.sources import CLEAR, STATED, UnknownSource
-from tyrefem.diagnose.numbers import amount, percent
+from tyrefem.diagnose.numbers import amount, percent, run_words
 from tyrefem.diagnose.unknowns.heat_patches import ALL_LAYERS, OUTER, SURFACES
 from tyrefem.geometry.place_names import place
 
@@ -33,11 +33,16 @@ def heat_words(d: DiagnosisData) -> str:
 
 def source_words(d: DiagnosisData, source: UnknownSource, over_time: HeatOverTime) -> str:
     """A source in one to three sentences: sign, place and amount; then what the data do not tell; then the course."""
-    size = amount(source.amount, source.sd, "W/m**3" if source.inside else "W/m**2")
-    when = "while the tyre rolls" if source.inside else "also at rest"
-    first = f"{_sign(source.amount)} {source_place(d, source)}: {size}, {when}"
+    when = "" if source.at else ", while the tyre rolls" if source.inside else ", also at rest"
+    first = f"{_sign(source.amount)} {source_place(d, source)}: {source_amount(source)}{when}"
     moved = [f"It {source.move.words}"] if source.move is not None else []
     return ". ".join([first, *moved, *_depth_doubt(source, over_time), course_words(source)])
+
+
+def source_amount(source: UnknownSource) -> str:
+    """The amount of a source with its standard deviation; of a free course with run and time, if clear only then."""
+    size = amount(source.amount, source.sd, "W/m**3" if source.inside else "W/m**2")
+    return size if source.at is None else f"{size} ({run_words(source.at[0])} at {source.at[1]:.0f} s)"
 
 
 def source_place(d: DiagnosisData, source: UnknownSource) -> str:

@@ -219,7 +219,8 @@ def missing_heat(d: DiagnosisData) -> dict[str, Any]:
 def source_row(d: DiagnosisData, source: UnknownSource, over_time: HeatOverTime) -> dict[str, Any]:
     """A source of missing heat (positive) or of too much heat (negative): W/m3 inside, W/m2 through a surface.
 
-    ``stated``: the amount differs from zero by more than two standard deviations. ``depth``: probability of each layer
+    ``stated``: the amount differs from zero by more than two standard deviations. ``amount_at``: run and time of the
+    amount, where a free course is clear then, but not its mean. ``depth``: probability of each layer
     and surface at the station. ``course_probabilities``: of each course in time. ``runs``: the amount over time.
     """
     unit = "W_m3" if source.inside else "W_m2"
@@ -234,6 +235,7 @@ def source_row(d: DiagnosisData, source: UnknownSource, over_time: HeatOverTime)
         "kind": "heat" if source.inside else "flux",
         f"amount_{unit}": source.amount,
         f"amount_sd_{unit}": source.sd,
+        "amount_at": None if source.at is None else dict(zip(("run", "time_s"), source.at, strict=True)),
         "moves": _movement(source.move),
         "station_probabilities": [{"station_m": s, "probability": share} for s, share in source.stations.items()],
         "depth": dict(source.depths),
