@@ -17,9 +17,10 @@ from tyrefem.diagnose.law.evidence import LawFit
 from tyrefem.diagnose.law.heat_law import Exponent, PlaceLaw
 from tyrefem.diagnose.law.places import FILM, FLUX, HEAT, LOSS, SIDEWALL, LawPlace
 from tyrefem.diagnose.law.terms import LawTerms, Switch
+from tyrefem.diagnose.unknowns.heat_patches import OUTER
 from tyrefem.diagnose.unknowns.unknown import Unknown
 from tyrefem.diagnose.words.draft_effect import draft_effects
-from tyrefem.diagnose.words.law import cause_words, discrepancy_words, limits
+from tyrefem.diagnose.words.law import cause_words, discrepancy_words, limits, one_law_words
 from tyrefem.effects import catalogue, use_effects
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import study
@@ -228,6 +229,23 @@ def test_steady_heat_into_the_sidewall_may_be_the_sun_on_that_side() -> None:
     assert cause_words(side, law({}, amplitude=-2e4)) == cause_words(side, law({}, "begins", 300.0)) == []
     assert cause_words(side, law({"speed": 1.0})) == []
     assert cause_words(replace(side, where="whole outer surface"), law({})) == []
+
+
+@pytest.mark.parametrize(
+    ("sources", "share", "beside", "told"), [(3, 0.987, 0, True), (1, 0.987, 0, False), (3, 0.8, 0, False),
+                                             (3, 0.987, 1, False)],
+)  # fmt: skip
+def test_one_law_that_describes_what_several_sources_do_is_told_in_one_sentence(
+    sources: int, share: float, beside: int, told: bool
+) -> None:
+    side = LawPlace(FLUX, np.nan, SIDEWALL, HEATED, 1.0)
+    d = diagnosis(side, law({}, amplitude=216.0))
+    source = SimpleNamespace(where=OUTER, inside=False, depths={OUTER: 1.0}, move=None)
+    d.missing = SimpleNamespace(over_time=SimpleNamespace(clear=(source,) * sources))
+    d.law.share, d.law.ranking = share, (SimpleNamespace(place=side, beside=beside, below=0.0),)
+    words = "One law describes 98.7 % of this heat: through the whole sidewall surface, the same at every speed, "
+    assert one_law_words(d).startswith(words) is told
+    assert ("+216 ± 22 W/m²; the sun on that side, or a hot body" in one_law_words(d)) is told
 
 
 @pytest.mark.parametrize(

@@ -20,6 +20,7 @@ from tyrefem.diagnose.verdicts.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, PA
 from tyrefem.diagnose.words.discrepancy_record import possible_effects
 from tyrefem.diagnose.words.draft_effect import EFFECTS, draft_effects
 from tyrefem.diagnose.words.heat import course_words, source_amount, source_place
+from tyrefem.diagnose.words.law import one_law_words
 from tyrefem.diagnose.words.partly import (
     besides_words,
     explaining_words,
@@ -216,6 +217,7 @@ def _unexplained(d: DiagnosisData) -> tuple[str, str, str]:
     other = explaining_words(d)
     cause = f"{other[0].lower()}{other[1:].rstrip('.')}" if other else heat_clause(d, sources)
     wrong = f"No effect in the catalogue explains the deviation; {cause}."
+    wrong += "" if other or not (law := one_law_words(d)) else f" {law}"
     likely = _likely(d)
     if likely and other:
         wrong += f" If that holds, beside it may act: {likely}."

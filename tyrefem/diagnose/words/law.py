@@ -9,6 +9,7 @@ from tyrefem.diagnose.beside.discrepancy import HEAT, NONE, READINGS
 from tyrefem.diagnose.heat.courses import BEGINS, ENDS, PHASE, RUN
 from tyrefem.diagnose.heat.sources import CLEAR, STATED
 from tyrefem.diagnose.law.places import FILM, FLUX, LOSS, SIDEWALL, UNITS, WHOLE_SURFACES, LawPlace
+from tyrefem.diagnose.law.search import MOSTLY
 from tyrefem.diagnose.law.terms import ABOVE, DEFLECTION, LOAD, NO_SWITCH, PRESSURE, REST, ROLLING, SPEED, WARM
 from tyrefem.diagnose.numbers import amount, chance, percent, time_with_sd, with_sd
 from tyrefem.diagnose.unknowns.heat_patches import SURFACES, place_of
@@ -45,23 +46,39 @@ def law_words(d: DiagnosisData) -> tuple[str, ...]:
     if not heat.holds:
         return ("No law of speed, load, pressure, temperature and time describes this heat in all runs",)
     law = heat.law
-    sign = "" if law.amplitude > 0 else "cooling, "
     heads = {PARTLY: "The heat that is missing beside it has a law over these runs"}
     head = heads.get(d.verdict, "Its law over these runs")
-    first = f"{head}: {sign}{law_place_words(d, heat.place)}, {law_formula(law)}{_when(heat)}"
-    unit = UNITS[heat.place.kind]
-    size = amount(100 * law.amplitude, 100 * law.sd, "%") if unit == "1" else amount(law.amplitude, law.sd, unit)
-    at = [reference_words(law, name) for name in law.fit.terms]
     part = f"It describes {percent(heat.share)} of what heat with a free course in every run describes"
     rest = [part] if heat.share < PART else []
     return (
-        f"{first}: {size}{' at ' + ', '.join(at) if at else ''}",
+        f"{head}: {_law_itself(d, heat)}",
         *rest,
         *cause_words(heat.place, law),
         *place_words(d, heat),
         *limits(law),
         *discrepancy_words(d),
     )
+
+
+def one_law_words(d: DiagnosisData) -> str:
+    """The law in one sentence where it alone describes nearly all of what several clear sources do; else empty."""
+    heat, over_time = d.law, d.missing.over_time
+    if heat is None or over_time is None or len(over_time.clear) < 2:
+        return ""
+    if not heat.holds or heat.ranking[0].beside or heat.share < MOSTLY or place_words(d, heat):
+        return ""
+    cause = "".join(f"; {each[0].lower()}{each[1:]}" for each in cause_words(heat.place, heat.law))
+    return f"One law describes {percent(heat.share)} of this heat: {_law_itself(d, heat)}{cause}."
+
+
+def _law_itself(d: DiagnosisData, heat: HeatLaw) -> str:
+    """Sign, place, terms, switch and amplitude of a law."""
+    law, unit = heat.law, UNITS[heat.place.kind]
+    sign = "" if law.amplitude > 0 else "cooling, "
+    size = amount(100 * law.amplitude, 100 * law.sd, "%") if unit == "1" else amount(law.amplitude, law.sd, unit)
+    at = [reference_words(law, name) for name in law.fit.terms]
+    formula = f"{sign}{law_place_words(d, heat.place)}, {law_formula(law)}{_when(heat)}"
+    return f"{formula}: {size}{' at ' + ', '.join(at) if at else ''}"
 
 
 def cause_words(place: LawPlace, law: PlaceLaw) -> list[str]:
