@@ -13,7 +13,7 @@ from hidden import Case
 from made_up import unexplained
 
 from tyrefem.diagnose import DiagnosisData
-from tyrefem.diagnose.beside.discrepancy import ENERGY, HEAT, READINGS
+from tyrefem.diagnose.beside.discrepancy import ENERGY, HEAT, NONE, READINGS
 from tyrefem.diagnose.beside.robustness import Robustness, UnderDiscrepancy
 from tyrefem.diagnose.blind.blind_case import outcome_row
 from tyrefem.diagnose.fitting.fits import FittedSet
@@ -142,3 +142,22 @@ def test_heat_that_explains_the_deviation_is_told_with_its_place(case: Case) -> 
     d = with_source(replace(d, robustness=replace(d.robustness, models=models, log_evidence=-500.0)), 20.0)
     assert "heat is missing in mid sidewall" in headline(d)[0]
     assert "heat of unknown origin would explain it" not in headline(d)[0]
+
+
+@pytest.mark.parametrize("share", [0.4, 0.01])
+def test_effects_alone_that_the_data_do_not_exclude_are_told(case: Case, share: float) -> None:
+    """A strain energy leads by 60 to 40 %: the hot road, certain without it, stands in the first sentence too."""
+    d = with_models(case.diagnosis, left=0.2, leading_p=0.5)
+    assert d.robustness is not None
+    first = replace(d.robustness.models[0], name=ENERGY, words="another strain energy", probability=1 - share)
+    hot = next(candidate for candidate in d.candidates if candidate.key == "hot-road")
+    fit = replace(d.null, misfit=float(d.null.readings))
+    none = UnderDiscrepancy(NONE, 0.0, "as it is", share, {"hot-road": 0.999, "sun": 0.2}, (hot,), {}, {(hot,): fit})
+    d = replace(d, robustness=Robustness((first, none)))
+    wrong, sure, step = headline(d)
+    told = share > 0.05
+    assert ("Or effects alone explain it: hot-road (99.9 %)." in wrong) is told
+    assert ("is sure to explain the deviation" in wrong) is told
+    assert ("Another strain energy: 60 % probable, effects alone 40 %" in sure) is told
+    assert ("find out whether hot-road acted" in step) is told
+    assert ("Or effects alone explain it (40 % probable): hot-road (99.9 %)." in verdict_words(d)) is told

@@ -22,7 +22,10 @@ from tyrefem.diagnose.words.draft_effect import EFFECTS, draft_effects
 from tyrefem.diagnose.words.heat import course_words, source_amount, source_place
 from tyrefem.diagnose.words.law import one_law_words
 from tyrefem.diagnose.words.partly import (
+    LIKELY,
     besides_words,
+    effects_alone,
+    effects_of,
     explaining_words,
     heat_before_errors,
     least_probable,
@@ -52,8 +55,6 @@ QUESTIONS = ("What is wrong", "How sure", "What to do next")
 CLEAR_GAP = 1.5
 #: Largest number of corrections and of sets of effects in a sentence.
 CORRECTIONS, SETS = 3, 3
-#: Effects that may act beside a discrepancy stand in the first sentence from this probability on.
-LIKELY = 0.5
 
 
 def headline(d: DiagnosisData) -> tuple[str, str, str]:
@@ -216,20 +217,29 @@ def _unexplained(d: DiagnosisData) -> tuple[str, str, str]:
     sources = d.missing.clear
     other = explaining_words(d)
     cause = f"{other[0].lower()}{other[1:].rstrip('.')}" if other else heat_clause(d, sources)
-    wrong = f"No effect in the catalogue explains the deviation; {cause}."
+    alone = effects_alone(d)
+    explains = "explains" if alone is None else "is sure to explain"
+    wrong = f"No effect in the catalogue {explains} the deviation; {cause}."
     wrong += "" if other or not (law := one_law_words(d)) else f" {law}"
     likely = _likely(d)
     if likely and other:
         wrong += f" If that holds, beside it may act: {likely}."
     elif likely and d.robustness is not None:
         wrong += f" Beside {d.robustness.models[0].words} may act: {likely}."
+    wrong += f" Or effects alone explain it: {effects_of(alone)}." if alone is not None else ""
     if d.judgement.doubts:
         sure = f"{_opened(d.judgement.doubts[0])}; {_gap(d)}."
+    elif other and alone is not None and d.robustness is not None:
+        leading = d.robustness.models[0]
+        chances = f"{percent(leading.probability)} probable, effects alone {percent(alone.probability)}"
+        sure = f"{_upper(leading.words)}: {chances}, of all that was tried beside effects; {_gap(d)}."
     else:
         chance = percent(d.judgement.best.probability)
         sure = f"A cause outside the catalogue is {chance} probable against every set of effects tried; {_gap(d)}."
     row = clearest(d)
     rest = _rest(d) or "write the cause as an effect (docs/effects.md) and diagnose again"
+    if alone is not None:
+        rest = f"find out whether {' and '.join(member.key for member in alone.best)} acted, or {rest}"
     place = f"{row['sensor']} in {run_words(str(row['run']))}"
     step = (
         f"Check {place} first, where measured - computed is {row['mean_K']:+z.1f} K {phase_words(str(row['phase']))}: "

@@ -14,10 +14,11 @@ from tyrefem.diagnose.data.residual_tables import rms
 from tyrefem.diagnose.numbers import amount, at_least, extent, parameter_name, percent
 from tyrefem.diagnose.unknowns.energy_shapes import SHAPE, courses
 from tyrefem.diagnose.verdicts.verdict import PARTLY
-from tyrefem.diagnose.words.discrepancy_record import possible_effects
+from tyrefem.diagnose.words.discrepancy_record import POSSIBLE, possible_effects
 from tyrefem.diagnose.words.heat import NOT_CLEAR, heat_words, station_words
 
 if TYPE_CHECKING:
+    from tyrefem.diagnose.beside.robustness import UnderDiscrepancy
     from tyrefem.diagnose.diagnosis import DiagnosisData
     from tyrefem.diagnose.fitting.fits import FittedSet
     from tyrefem.diagnose.unknowns.candidates import Candidate
@@ -29,6 +30,8 @@ CLEAR = 2.0
 TIMES = 2.5
 #: Another strain energy is reported if it explains more than this share of the deviation.
 MOST = 0.5
+#: Effects that may act stand in the first sentence from this probability on.
+LIKELY = 0.5
 
 
 def ranges(d: DiagnosisData, member: Candidate) -> list[str]:
@@ -148,6 +151,25 @@ def or_outside_words(d: DiagnosisData) -> str:
         )
     keys = " + ".join(member.key for member in leading.best)
     return f"The data also speak for {leading.words} ({chance} probable); beside it {keys} is the most probable set."
+
+
+def effects_alone(d: DiagnosisData) -> UnderDiscrepancy | None:
+    """Effects without anything else wrong, where another model leads but the data do not exclude them; else None.
+
+    They have at least `POSSIBLE` probability among the models, and noise explains what their best set leaves.
+    """
+    models = d.robustness.models[1:] if d.robustness is not None else ()
+    alone = next((model for model in models if model.name == NONE), None)
+    if alone is None or not alone.best or alone.probability < POSSIBLE or alone.p_value < LEAST_P:
+        return None
+    return alone
+
+
+def effects_of(model: UnderDiscrepancy) -> str:
+    """The effects that act beside a model with at least even odds, else its most probable one, with probabilities."""
+    likely = {key: share for key, share in model.named.items() if share >= LIKELY}
+    first = dict(sorted(model.named.items(), key=lambda item: -item[1])[:1])
+    return ", ".join(f"{key} ({percent(share)})" for key, share in (likely or first).items())
 
 
 def beyond_noise(rms_of_all: float, noise: float) -> float:

@@ -19,6 +19,8 @@ from tyrefem.diagnose.words.law import law_words
 from tyrefem.diagnose.words.partly import (
     beside_it_words,
     besides_words,
+    effects_alone,
+    effects_of,
     explaining_words,
     least_words,
     or_outside_words,
@@ -121,12 +123,18 @@ def _unexplained(d: DiagnosisData, closing: str) -> tuple[str, ...]:
     entries = {change.unknown.key for change in d.changes if change.missing}
     many = f"{len(entries)} entries" if len(entries) > 1 else "an entry"
     describe = "describe" if len(entries) > 1 else "describes"
+    alone = effects_alone(d)
+    explains, instead = "explains", list[str]()
+    if alone is not None:
+        explains = "is sure to explain"
+        instead = [f"Or effects alone explain it ({percent(alone.probability)} probable): {effects_of(alone)}."]
     described = f"The amended study has {many} of missing heat, which {describe} the deviation without a cause."
     return (
-        "No effect in the catalogue explains the deviation.",
+        f"No effect in the catalogue {explains} the deviation.",
         *d.judgement.doubts,
         *missing_heat_words(d)[:1],
         *(sentence for sentence in (explaining_words(d), beside_it_words(d)) if sentence),
+        *instead,
         *missing_heat_words(d)[1:],
         *partly,
         *([described] if entries else []),
