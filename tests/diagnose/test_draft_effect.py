@@ -20,7 +20,7 @@ from tyrefem.diagnose.law.terms import LawTerms, Switch
 from tyrefem.diagnose.unknowns.heat_patches import OUTER
 from tyrefem.diagnose.unknowns.unknown import Unknown
 from tyrefem.diagnose.words.draft_effect import draft_effects
-from tyrefem.diagnose.words.law import cause_words, discrepancy_words, limits, one_law_words
+from tyrefem.diagnose.words.law import cause_words, discrepancy_words, limits, limits_where_it_acts, one_law_words
 from tyrefem.effects import catalogue, use_effects
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import study
@@ -229,6 +229,19 @@ def test_steady_heat_into_the_sidewall_may_be_the_sun_on_that_side() -> None:
     assert cause_words(side, law({}, amplitude=-2e4)) == cause_words(side, law({}, "begins", 300.0)) == []
     assert cause_words(side, law({"speed": 1.0})) == []
     assert cause_words(replace(side, where="whole outer surface"), law({})) == []
+
+
+@pytest.mark.parametrize(
+    ("kind", "speeds", "told"),
+    [("run B", [15.6, 15.6, 0.0], True), ("run B", [10.0, 20.0, 0.0], False), ("no switch", [15.6, 15.6, 0.0], False)],
+)
+def test_an_exponent_from_one_run_at_one_speed_is_no_law_of_speed(kind: str, speeds: list[float], told: bool) -> None:
+    """With the walking pace at rest, such a run gave speed^1.33 with a standard deviation of 0.05."""
+    variables = SimpleNamespace(speed=np.array(speeds), rolling=np.array(speeds) > 0)
+    place = LawPlace(FLUX, np.nan, "whole tread surface", HEATED, 1.0)
+    heat: Any = SimpleNamespace(place=place, law=law({"speed": 1.33}, kind), variables=variables)
+    words = "Speed hardly varies there while the tyre rolls, so its exponent only tells rolling from rest"
+    assert limits_where_it_acts(heat) == ([words] if told else [])
 
 
 @pytest.mark.parametrize(

@@ -123,6 +123,19 @@ def test_a_likely_effect_is_told_with_what_it_acts_beside(case: Case, lead: floa
     assert headline(d)[0].endswith(f"{may}: hot-road (60 %).")
 
 
+def test_a_model_that_explains_the_deviation_only_with_an_effect_is_told_with_it(case: Case) -> None:
+    """Errors of 0.5 K were said to explain a deviation of 15 K by themselves."""
+    d = with_models(case.diagnosis, left=0.2, leading_p=0.5)
+    assert d.robustness is not None
+    first, *others = d.robustness.models
+    hot, sun = (next(each for each in d.candidates if each.key == key) for key in ("hot-road", "sun"))
+    beside = replace(first, best=(sun, hot), named={"hot-road": 0.999, "sun": 0.3})
+    words = "rrors of the readings would explain it together with hot-road."
+    d = replace(d, robustness=Robustness((beside, *others)))
+    assert f"; e{words}" in headline(d)[0]
+    assert f"E{words}" in verdict_words(d)
+
+
 def test_contained_air_has_no_place_to_check(case: Case) -> None:
     d = unexplained(case.diagnosis, 1e3)
     assert "its place, its channel and the drive" in headline(d)[2]

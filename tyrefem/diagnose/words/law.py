@@ -5,12 +5,26 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from tyrefem.diagnose.beside.discrepancy import HEAT, NONE, READINGS
 from tyrefem.diagnose.heat.courses import BEGINS, ENDS, PHASE, RUN
 from tyrefem.diagnose.heat.sources import CLEAR, STATED
 from tyrefem.diagnose.law.places import FILM, FLUX, LOSS, SIDEWALL, UNITS, WHOLE_SURFACES, LawPlace
 from tyrefem.diagnose.law.search import MOSTLY
-from tyrefem.diagnose.law.terms import ABOVE, DEFLECTION, LOAD, NO_SWITCH, PRESSURE, REST, ROLLING, SPEED, WARM
+from tyrefem.diagnose.law.terms import (
+    ABOVE,
+    DEFLECTION,
+    HARDLY,
+    LOAD,
+    MECHANICAL,
+    NO_SWITCH,
+    PRESSURE,
+    REST,
+    ROLLING,
+    SPEED,
+    WARM,
+)
 from tyrefem.diagnose.numbers import amount, chance, percent, time_with_sd, with_sd
 from tyrefem.diagnose.unknowns.heat_patches import SURFACES, place_of
 from tyrefem.diagnose.verdicts.verdict import PARTLY
@@ -56,6 +70,7 @@ def law_words(d: DiagnosisData) -> tuple[str, ...]:
         *cause_words(heat.place, law),
         *place_words(d, heat),
         *limits(law),
+        *limits_where_it_acts(heat),
         *discrepancy_words(d),
     )
 
@@ -132,6 +147,25 @@ def limits(law: PlaceLaw) -> list[str]:
         verb, of = ("vary", "their exponents") if len(law.hardly) > 1 else ("varies", "its exponent")
         sentences.append(f"{_and(law.hardly).capitalize()} hardly {verb}, so nothing is known of {of}")
     return sentences
+
+
+def limits_where_it_acts(heat: HeatLaw) -> list[str]:
+    """Variables of the law that hardly vary in the only run in which it acts.
+
+    The speed at rest counts as a walking pace in the law of a flux, so that its exponent tells rolling from rest.
+    """
+    switch, variables = heat.law.fit.switch, heat.variables
+    if not switch.kind.startswith(RUN):
+        return []
+    here = (np.asarray(switch.on) > 0) & variables.rolling
+    names = [name for name in heat.law.fit.terms if name in (SPEED, *MECHANICAL)]
+    same = [name for name in names if here.any() and np.ptp(np.log(getattr(variables, name)[here])) < HARDLY]
+    return [
+        f"{name.capitalize()} hardly varies there while the tyre rolls, so "
+        + ("its exponent only tells rolling from rest" if name == SPEED and not heat.place.inside else
+           "nothing is known of its exponent")
+        for name in same
+    ]  # fmt: skip
 
 
 def discrepancy_words(d: DiagnosisData) -> list[str]:

@@ -95,6 +95,7 @@ def besides_words(d: DiagnosisData) -> str:
 def explaining_words(d: DiagnosisData) -> str:
     """The discrepancy that explains the deviation without a named effect, as a sentence; empty if none does.
 
+    The effects that are likely beside it are told with it: errors of 0.5 K by themselves explain no deviation of 5 K.
     Another strain energy is also told if it explains most of the deviation, but noise does not explain the rest. Errors
     of the readings are not told where heat of unknown origin explains the data better: they fit any smooth deviation,
     and the heat has a place.
@@ -110,7 +111,9 @@ def explaining_words(d: DiagnosisData) -> str:
     fit = leading.fits.get(())
     shares = energy_words(d, fit) if leading.name == ENERGY and fit is not None else ""
     words = f"{leading.words[0].upper()}{leading.words[1:]}"
-    return f"{words} would explain it{f': {shares}' if shares else ''}."
+    likely = " + ".join(sorted(each.key for each in leading.best if leading.named.get(each.key, 0.0) >= LIKELY))
+    together = f" together with {likely}" if likely else ""
+    return f"{words} would explain it{together}{f': {shares}' if shares else ''}."
 
 
 def heat_before_errors(d: DiagnosisData) -> bool:
