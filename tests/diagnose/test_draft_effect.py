@@ -255,10 +255,22 @@ def test_one_law_that_describes_what_several_sources_do_is_told_in_one_sentence(
     d = diagnosis(side, law({}, amplitude=216.0))
     source = SimpleNamespace(where=OUTER, inside=False, depths={OUTER: 1.0}, move=None)
     d.missing = SimpleNamespace(over_time=SimpleNamespace(clear=(source,) * sources))
-    d.law.share, d.law.ranking = share, (SimpleNamespace(place=side, beside=beside, below=0.0),)
+    d.law.lead, d.law.share, d.law.ranking = -0.5, share, (SimpleNamespace(place=side, beside=beside, below=0.0),)
     words = "One law describes 98.7 % of this heat: through the whole sidewall surface, the same at every speed, "
     assert one_law_words(d).startswith(words) is told
     assert ("+216 ± 22 W/m²; the sun on that side, or a hot body" in one_law_words(d)) is told
+
+
+@pytest.mark.parametrize(("lead", "told"), [(8.0, True), (-8.0, False)])
+def test_one_law_at_another_place_than_the_sources_is_told_if_the_data_prefer_it(lead: float, told: bool) -> None:
+    """Heat inside the sidewall was told alone, though the data preferred a larger film with more than 99.99 %."""
+    d = diagnosis(LawPlace(FILM, np.nan, "outside_air", HEATED, 1.0), law({}, "ends", 586.0, amplitude=1.18))
+    move = SimpleNamespace(kelvin=-8.0)
+    source = SimpleNamespace(station=0.095, where="sidewall", inside=True, depths={"sidewall": 1.0}, move=move)
+    d.missing = SimpleNamespace(over_time=SimpleNamespace(clear=(source, source)))
+    d.law.lead, d.law.share = lead, 0.999
+    d.law.ranking = (SimpleNamespace(place=d.law.place, beside=0, below=0.0),)
+    assert one_law_words(d).startswith("One law describes 99.9 % of this heat: a share of the outside air film") is told
 
 
 @pytest.mark.parametrize(

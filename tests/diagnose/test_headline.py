@@ -221,6 +221,8 @@ def test_heat_beside_a_part_of_the_cause_is_one_clause(case: Case) -> None:
         "besides it the model has too much heat, cooling is missing, at the outer surface, in mid sidewall (s = 95 mm "
         "along the meridian): -435 ± 11 W/m²; it is constant in time; and 2 more places."
     )
+    two = replace(d, missing=replace(d.missing, over_time=SimpleNamespace(clear=sources[:2], cools=True)))
+    assert headline(two)[0].endswith("; and 1 more place.")
 
 
 def supported(d: DiagnosisData, *left: LeftOut, only_at: str = "") -> DiagnosisData:

@@ -306,7 +306,8 @@ def heat_clause(d: DiagnosisData, sources: Sequence[UnknownSource]) -> str:
     sign = "heat is missing" if first.amount > 0 else "the model has too much heat, cooling is missing,"
     course = course_words(first)
     course = f"; {course[0].lower()}{course[1:]}" if first.kinds[first.kind] >= STATED else ""
-    more = f"; and {len(sources) - 1} more places" if len(sources) > 1 else ""
+    left = len(sources) - 1
+    more = f"; and {left} more place{'s' if left > 1 else ''}" if left else ""
     return f"{sign} {source_place(d, first)}: {source_amount(first)}{_moves(first.move)}{course}{more}"
 
 
