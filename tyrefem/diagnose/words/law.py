@@ -83,7 +83,7 @@ def one_law_words(d: DiagnosisData) -> str:
     heat, over_time = d.law, d.missing.over_time
     if heat is None or over_time is None or len(over_time.clear) < 2:
         return ""
-    if not heat.holds or heat.ranking[0].beside or heat.share < MOSTLY or (heat.lead < 0 and place_words(d, heat)):
+    if not heat.holds or heat.ranking[0].others or heat.share < MOSTLY or (heat.lead < 0 and place_words(d, heat)):
         return ""
     cause = "".join(f"; {each[0].lower()}{each[1:]}" for each in cause_words(heat.place, heat.law))
     return f"One law describes {percent(heat.share)} of this heat: {_law_itself(d, heat)}{cause}."
