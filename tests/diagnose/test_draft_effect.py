@@ -255,7 +255,8 @@ def test_one_law_that_describes_what_several_sources_do_is_told_in_one_sentence(
     d = diagnosis(side, law({}, amplitude=216.0))
     source = SimpleNamespace(where=OUTER, inside=False, depths={OUTER: 1.0}, move=None)
     d.missing = SimpleNamespace(over_time=SimpleNamespace(clear=(source,) * sources))
-    d.law.lead, d.law.share, d.law.ranking = -0.5, share, (SimpleNamespace(place=side, others=(None,) * beside, below=0.0),)
+    d.law.lead, d.law.share = -0.5, share
+    d.law.ranking = (SimpleNamespace(place=side, others=(None,) * beside, below=0.0),)
     words = "One law describes 98.7 % of this heat: through the whole sidewall surface, the same at every speed, "
     assert one_law_words(d).startswith(words) is told
     assert ("+216 ± 22 W/m²; the sun on that side, or a hot body" in one_law_words(d)) is told
