@@ -24,9 +24,7 @@ class SensorMisplaced(OfSensor):
     signature: ClassVar[Signature] = Signature(choice={"sensor": "crown-inner"}, signs={"crown-inner": -1})
 
     along: Annotated[float, Prior("m", "along the meridian, towards larger s", 4e-3, -0.02, 0.02, written="mm")] = 0.0
-    deeper: Annotated[
-        float, Prior("m", "outwards, in depth from the inner surface", 2.5e-3, -0.01, 0.01, written="mm")
-    ] = 0.0
+    deeper: Annotated[float, Prior("m", "away from the inner surface", 2.5e-3, -0.01, 0.01, written="mm")] = 0.0
 
     def displacement(self, sensor: str) -> tuple[float, float]:
         """m along the meridian and in depth."""

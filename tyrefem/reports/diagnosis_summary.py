@@ -76,12 +76,18 @@ def summary(d: DiagnosisData, *, version: str) -> str:
 
 
 def clipped(sentence: str, most: int = 4 * CHARACTERS) -> str:
-    """A sentence with at most ``most`` characters, cut between words.
+    """Text with at most ``most`` characters, cut after a sentence or clause in its second half, else between words.
 
     >>> clipped("a thermocouple at the crown", 16)
     'a thermocouple …'
+    >>> clipped("it is late; as is the one at the crown (by 3 s)", 20)
+    'it is late; …'
     """
-    return sentence if len(sentence) <= most else f"{sentence[: most - 1].rpartition(' ')[0]} …"
+    if len(sentence) <= most:
+        return sentence
+    left = sentence[: most - 1]
+    end = max(left.rfind(mark) for mark in (". ", "; ")) + 1
+    return f"{left[:end] if end > most / 2 else left.rpartition(' ')[0]} …"
 
 
 def picture_height(tables: tuple[SummaryTable, ...], sentences: list[str], made: list[str]) -> float:
