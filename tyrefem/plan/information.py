@@ -129,6 +129,9 @@ def projected(gram: Array, unknowns: int, factors: Sequence[Array], probabilitie
     scale[:unknowns] = spread
     value, vector = np.linalg.eigh(gram * scale[:, None] * scale[None, :])
     kept = np.flatnonzero(value > NEGLIGIBLE)[::-1]
+    # An eigenvector has either sign: with the same one, rounding errors do not mirror what is drawn.
+    largest = np.take_along_axis(vector, np.abs(vector).argmax(axis=0)[None, :], axis=0)
+    vector = vector * np.where(largest < 0, -1.0, 1.0)
     R = np.sqrt(value[kept])[:, None] * vector[:, kept].T
     R_unknowns = np.divide(R[:, :unknowns], spread, out=np.zeros((len(kept), unknowns)), where=spread > 0)
     ranks = max(L.shape[1] for L in factors)
