@@ -213,14 +213,14 @@ def where_it_acts(residuals: Residuals, evaluations: Evaluations, heat: HeatOver
 
 
 def with_times(heat: HeatOverTime, acting: ActingHeat) -> HeatOverTime:
-    """The sources with times from where they act; their amounts stay those of the amended study."""
+    """The sources with times from where they act; of both intervals the wider one. Amounts stay the amended study's."""
     new = {
         (place.station, place.where): source
         for (place, _), source in zip(acting.entries, acting.sources, strict=True)
         if source is not None
     }
     sources = tuple(
-        replace(source, time=new[place].time, time_sd=new[place].time_sd)
+        replace(source, time=new[place].time, time_sd=max(new[place].time_sd, source.time_sd))
         if (place := (source.station, source.where)) in new
         else source
         for source in heat.sources

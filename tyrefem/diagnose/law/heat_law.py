@@ -107,7 +107,8 @@ class PlaceLaw(Brief):
     def dated(self, data: LawData, variables: DriveVariables, *, inside: bool) -> PlaceLaw:
         """The same law with switch and amplitude by other data, those about a point where the source acts.
 
-        This law if it has no time, or if its amplitude is not clear there.
+        The wider of both intervals of the time counts: another point adds no readings. This law if it has no time, or
+        if its amplitude is not clear there.
         """
         if math.isnan(self.time):
             return self
@@ -117,7 +118,7 @@ class PlaceLaw(Brief):
         time, time_sd = mean_time([switch.time for switch in of_kind], gains)
         fit = replace(self.fit, switch=of_kind[int(gains.argmax())])
         amplitude, sd = _amplitude(data, features, fit)
-        new = replace(self, fit=fit, amplitude=amplitude, sd=sd, time=time, time_sd=time_sd)
+        new = replace(self, fit=fit, amplitude=amplitude, sd=sd, time=time, time_sd=max(time_sd, self.time_sd))
         return new if new.clear else self
 
 
