@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, Any, Protocol
 
 from tyrefem.brief import LINES, cut
@@ -35,15 +36,15 @@ class DesignPart(Protocol):
         ...
 
 
-class InSentences:
+class InSentences(ABC):
     """A part whose `repr` is its heading and its sentences, as a notebook shows them."""
 
     heading: str
 
     @property
+    @abstractmethod
     def words(self) -> list[str]:
         """The answer in sentences."""
-        raise NotImplementedError
 
     def __repr__(self) -> str:
         rows = self.words
