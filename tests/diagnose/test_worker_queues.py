@@ -31,10 +31,16 @@ def fail() -> None:
     raise ValueError("a tyre of glass")
 
 
+def begun_in(queues: WorkerQueues, place: int) -> int:
+    """The process of a worker."""
+    return int(queues.workers[place].submit(os.getpid).result())
+
+
 def processes_of(queues: WorkerQueues, folder: Path) -> dict[int, int]:
     """Number of the task -> process, for a task at home in each of two workers."""
     folder.mkdir()
-    return dict(queues.results({home: HomedTask(home, process_of, (folder, str(home), 2)) for home in (0, 1)}))
+    tasks = {home: HomedTask(home, process_of, (folder, str(home), 2)) for home in (0, 1)}
+    return {number: process for number, _, process in queues.results(tasks)}
 
 
 def test_a_task_goes_to_the_worker_that_is_its_home(tmp_path: Path) -> None:
@@ -47,7 +53,19 @@ def test_a_task_goes_to_the_worker_that_is_its_home(tmp_path: Path) -> None:
 def test_an_idle_worker_helps(tmp_path: Path) -> None:
     with worker_queues(2) as queues:
         tasks = {number: HomedTask(0, meet, (tmp_path, str(number), 2)) for number in range(2)}
-        assert dict(queues.results(tasks)) == {0: True, 1: True}
+        assert {(number, helped) for number, _, helped in queues.results(tasks)} == {(0, True), (1, True)}
+
+
+def test_the_worker_of_a_result_is_told() -> None:
+    with worker_queues(2) as queues:
+        tasks = {number: HomedTask(1, os.getpid, (), stays=True) for number in range(3)}
+        assert {(worker, process) for _, worker, process in queues.results(tasks)} == {(1, begun_in(queues, 1))}
+
+
+def test_an_idle_worker_leaves_a_task_that_stays() -> None:
+    with worker_queues(2) as queues:
+        tasks = {number: HomedTask(0, time.sleep, (0.05,), stays=True) for number in range(4)}
+        assert {worker for _, worker, _ in queues.results(tasks)} == {0}
 
 
 def test_the_error_of_a_task_is_raised_and_the_workers_end() -> None:

@@ -40,6 +40,7 @@ def main(arguments: list[str] | None = None) -> int:
         if message:
             fail(message)
         if arguments is None:
+            gc.freeze()  # the process ends: a last search for garbage would take up to half a second
             ctrl_c.leave(code)
     return code
 

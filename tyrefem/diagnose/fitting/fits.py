@@ -264,7 +264,10 @@ def _fitted(pairs: Sequence[tuple[Residuals, FitState]], predictions: Prediction
             runs = residuals[place].runs
             whitened = [runs[i].whitened(J) for i, J in zip(numbers, answers, strict=True)]
             current[place] = current[place].with_jacobian(residuals[place].joined(whitened))
-    return [_concluded(each, predictions, state) for each, state in zip(residuals, current, strict=True)]
+    held_out = residuals[0].held_out if residuals else ()
+    questions = [(state.members, state.current_values) for state in current]
+    of_held_out = predictions.predict(questions, held_out)
+    return [_concluded(*each) for each in zip(residuals, current, of_held_out, strict=True)]
 
 
 def _advanced(residuals: Residuals, state: FitState, answers: Sequence[Array]) -> FitState:
@@ -276,16 +279,15 @@ def _advanced(residuals: Residuals, state: FitState, answers: Sequence[Array]) -
     return state.accepted(computed, residuals.joined([residuals.residual(i, blocks) for i, blocks in computed.items()]))
 
 
-def _concluded(residuals: Residuals, predictions: Predictions, state: FitState) -> FittedSet:
-    """The fitted set of a finished state."""
+def _concluded(residuals: Residuals, state: FitState, held_out: Sequence[Array]) -> FittedSet:
+    """The fitted set of a finished state; ``held_out``: its block means of the held-out runs."""
     computed = {i: residuals.corrected(i, state.computed[i]) for i in residuals.fitted}
     log_held = p_held = math.nan
     if residuals.held_out:
-        answers = predictions.predict([(state.members, state.current_values)], residuals.held_out)[0]
         known = [k for k, unknown in enumerate(state.unknowns) if unknown in residuals.unknowns]
         columns = [residuals.unknowns.index(state.unknowns[k]) for k in known]
         r, J = [], []
-        for i, answer in zip(residuals.held_out, answers, strict=True):
+        for i, answer in zip(residuals.held_out, held_out, strict=True):
             computed[i] = residuals.corrected(i, answer)
             r.append(residuals.residual(i, answer))
             J.append(residuals.whitened[i][:, columns])

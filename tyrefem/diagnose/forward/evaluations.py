@@ -6,7 +6,7 @@ import pickle
 import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -118,17 +118,25 @@ def worker_models(workers: Workers) -> Iterator[WorkerModels | None]:
         yield WorkerModels(workers, Path(folder))
 
 
+#: The method of `ForwardModel` that simulates a point of a fit.
+SIMULATION = "predict"
+#: Methods that need that simulation and little else: storing their answers would take longer.
+AFTER_SIMULATION = frozenset({"displaced"})
+
+
 @dataclass(frozen=True, eq=False)
 class Evaluations(Brief):
     """Evaluations of a forward model, in parallel if there are workers; ``file``: the model, for these.
 
-    Evaluations that ``store`` has from an interrupted diagnosis are not simulated again.
+    Evaluations that ``store`` has from an interrupted diagnosis are not simulated again. ``workers``: point of a fit ->
+    the worker that has its simulation.
     """
 
     model: ForwardModel
     queues: WorkerQueues | None = None
     store: ProgressStore | None = None
     file: Path | None = None
+    workers: dict[Any, int] = field(default_factory=dict, init=False, repr=False)
 
     def __reduce__(self) -> tuple[Any, ...]:
         """A pickled copy has the model only, without processes and store."""
@@ -136,15 +144,16 @@ class Evaluations(Brief):
 
     def of(self, name: str, questions: Sequence[tuple[Any, ...]], tick: Callable[[], None] | None = None) -> list[Any]:
         """Results of the method ``name`` of `ForwardModel` for several tuples of arguments, in their order."""
-        answers = [self.store.known(name, arguments) if self.store else None for arguments in questions]
+        store = None if name in AFTER_SIMULATION else self.store
+        answers = [store.known(name, arguments) if store else None for arguments in questions]
         left = [number for number, answer in enumerate(answers) if answer is None]
         for _ in range(len(answers) - len(left)):
             if tick:
                 tick()
         for number, answer in self._answers(name, {number: questions[number] for number in left}):
             answers[number] = answer
-            if self.store:
-                self.store.keep(name, questions[number], answer)
+            if store:
+                store.keep(name, questions[number], answer)
             if tick:
                 tick()
         return answers
@@ -169,17 +178,24 @@ class Evaluations(Brief):
             for number, arguments in questions.items():
                 yield number, getattr(self.model, name)(*arguments)
             return
-        yield from self.queues.results(
-            {
-                number: HomedTask(_home(number, arguments), _task, (self.file, name, arguments))
-                for number, arguments in questions.items()
-            }
-        )
+        tasks = {number: self._task_of(name, number, arguments) for number, arguments in questions.items()}
+        for number, worker, answer in self.queues.results(tasks):
+            if name in (SIMULATION, *AFTER_SIMULATION):
+                self.workers[_point(questions[number])] = worker
+            yield number, answer
+
+    def _task_of(self, name: str, number: int, arguments: tuple[Any, ...]) -> HomedTask:
+        """The task of a question: at the worker that has the simulation, else at that of its drive, if it has one."""
+        home = arguments[0] if isinstance(arguments[0], int) else number
+        simulated_by = self.workers.get(_point(arguments)) if name in AFTER_SIMULATION else None
+        stays = simulated_by is not None
+        return HomedTask(home if simulated_by is None else simulated_by, _task, (self.file, name, arguments), stays)
 
 
-def _home(number: int, arguments: tuple[Any, ...]) -> int:
-    """The number of the drive that a question is about; of the question if it is about none."""
-    return arguments[0] if isinstance(arguments[0], int) else number
+def _point(arguments: tuple[Any, ...]) -> tuple[int, frozenset[Any]]:
+    """The drive and the values of the unknowns that a question begins with."""
+    number, values, *_ = arguments
+    return number, frozenset(values.items())
 
 
 @contextmanager

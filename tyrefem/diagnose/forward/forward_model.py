@@ -138,8 +138,8 @@ class ForwardModel(Brief):
 
     def history(self, study: StudyData) -> Array:
         """(1 + n_sensors, n_times): times, s, and readings of `sensors` by a full run; ``study``: at a drive."""
-        table = run(study).readings
-        return np.array([table[name].to_numpy(dtype=float) for name in ("time_s", *self.sensors)])
+        columns = run(study).reading_columns
+        return np.array([columns[name] for name in ("time_s", *self.sensors)])
 
     def blocks_of(self, number: int, history: Array) -> Array:
         """Block means at a drive from a `history`."""

@@ -17,18 +17,22 @@ T = TypeVar("T")
 
 @dataclass(frozen=True)
 class HomedTask:
-    """``function(*arguments)``, to be done by the worker number ``home`` (modulo the number of workers)."""
+    """``function(*arguments)``, to be done by the worker number ``home`` (modulo the number of workers).
+
+    ``stays``: another worker, even an idle one, would take longer.
+    """
 
     home: int
     function: Callable[..., Any]
     arguments: tuple[Any, ...]
+    stays: bool = False
 
 
 @dataclass(frozen=True, eq=False)
 class WorkerQueues:
     """Workers that keep what they have made: simulations of a drive, for example.
 
-    An idle worker takes the last task of the longest queue.
+    An idle worker takes the last task of the longest queue, unless the task stays.
 
     Parameters
     ----------
@@ -47,8 +51,8 @@ class WorkerQueues:
         for worker in self.workers:
             worker.submit(_load, module)
 
-    def results(self, tasks: Mapping[int, HomedTask]) -> Iterator[tuple[int, Any]]:
-        """Yield (number of the task, result) as the results become ready."""
+    def results(self, tasks: Mapping[int, HomedTask]) -> Iterator[tuple[int, int, Any]]:
+        """Yield (number of the task, number of its worker, result) as the results become ready."""
         queues: list[deque[int]] = [deque() for _ in self.workers]
         for number, task in tasks.items():
             queues[task.home % len(queues)].append(number)
@@ -56,7 +60,7 @@ class WorkerQueues:
 
         def begin(place: int) -> None:
             queue = queues[place] or max(queues, key=len)
-            if queue:
+            if queue and (queue is queues[place] or not tasks[queue[-1]].stays):
                 number = queue.popleft() if queue is queues[place] else queue.pop()
                 future = self.workers[place].submit(tasks[number].function, *tasks[number].arguments)
                 running[future] = number, place
@@ -68,7 +72,7 @@ class WorkerQueues:
             for future in finished:
                 number, place = running.pop(future)
                 begin(place)
-                yield number, future.result()
+                yield number, place, future.result()
 
 
 #: What workers of a diagnosis import while their parent imports modules of its own.

@@ -7,7 +7,6 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import cholesky, solve_triangular
 
 from tyrefem.brief import Brief
 
@@ -30,22 +29,29 @@ class SharedError(Brief):
         return f"{self.fitted.shape[1]} columns"
 
     @cached_property
-    def _root(self) -> Array:
+    def _modes(self) -> tuple[Array, Array]:
+        """Orthogonal columns C V (n, k), and (1 + t)^1/2 (k,) with C^T C = V t V^T."""
         C = self.fitted
-        return np.asarray(cholesky(np.eye(len(C)) + C @ C.T, lower=True))
+        t, V = np.linalg.eigh(C.T @ C)
+        return C @ V, np.sqrt(1.0 + np.maximum(t, 0.0))
 
     @cached_property
     def log_det(self) -> float:
         """ln det(1 + C C^T) / 2."""
-        return float(np.log(np.diag(self._root)).sum())
+        return float(np.log(self._modes[1]).sum())
 
     def whitened(self, rows: Array) -> Array:
-        """L^-1 times rows (n, ...) of the fitted runs, with 1 + C C^T = L L^T."""
-        return np.asarray(solve_triangular(self._root, rows, lower=True))
+        """(1 + C C^T)^-1/2 times rows (n, ...) of the fitted runs.
+
+        It is 1 - C V f V^T C^T with f = 1 / (w + w^2), w = (1 + t)^1/2: there are fewer columns than readings.
+        """
+        columns, root = self._modes
+        return np.asarray(rows - (columns / (root * (1.0 + root))) @ (columns.T @ rows))
 
     def colored(self, rows: Array) -> Array:
-        """L times whitened rows: the inverse of `whitened`."""
-        return np.asarray(self._root @ rows)
+        """(1 + C C^T)^1/2 times whitened rows: the inverse of `whitened`."""
+        columns, root = self._modes
+        return np.asarray(rows + (columns / (1.0 + root)) @ (columns.T @ rows))
 
     @cached_property
     def _columns(self) -> Array:

@@ -248,11 +248,8 @@ def _shifted(ranking: Sequence[RankedSet], shifts: Mapping[int, float]) -> tuple
     scores = np.array([entry.score + shifts.get(number, 0.0) for number, entry in enumerate(ranking)])
     shares = np.exp(scores - scores.max())
     shares /= shares.sum()
-    entries = [
-        replace(entry, score=float(score), probability=float(share))
-        for entry, score, share in zip(ranking, scores, shares, strict=True)
-    ]
-    return tuple(sorted(entries, key=lambda entry: -entry.score))
+    order = np.argsort(-scores, kind="stable")
+    return tuple(ranking[number].ranked(float(scores[number]), float(shares[number])) for number in order)
 
 
 def _beside(

@@ -43,6 +43,10 @@ class RankedSet(Brief):
     def _title(self) -> str:
         return f"{self.key}: {self.probability:.3g}"
 
+    def ranked(self, score: float, probability: float) -> RankedSet:
+        """The set with another score and probability. `replace` is slow for thousands of sets."""
+        return RankedSet(self.members, score, probability, self.fit, self.outside, self.outside_held_out)
+
     @property
     def held_out(self) -> float:
         """ln p(held-out data | fitted data, set); NaN if the set was not fitted, or no run is held out."""
