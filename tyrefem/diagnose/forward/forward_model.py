@@ -20,6 +20,7 @@ from tyrefem.diagnose.forward.reading_sensitivities import ReadingSensitivities,
 from tyrefem.diagnose.forward.reduced_drive import Modes, ReducedDrive, modes_of
 from tyrefem.diagnose.forward.sampling import DriveSampling
 from tyrefem.diagnose.forward.source_responses import source_responses
+from tyrefem.diagnose.forward.step_groups import step_groups, stepped
 from tyrefem.diagnose.forward.strain_law_study import heats_by_law, readings_by_law
 from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
 from tyrefem.diagnose.unknowns.unknown import Unknown, with_values
@@ -350,22 +351,30 @@ class ForwardModel(Brief):
         """
         base, drive = self.base(number), self._reduced_drive(number, modes)
         here = self.with_values(base.study, at, base.study)
-        there: dict[int, tuple[StudyData, bool]] = {}
-        for column, unknown in enumerate(unknowns):
+        there: dict[tuple[int, ...], tuple[StudyData, bool]] = {}
+        for group in step_groups(unknowns, here):
+            unknown = unknowns[group[0]]
             try:
-                study = self.with_values(base.study, {**at, unknown: at.get(unknown, 0.0) + unknown.step}, here)
+                study = self.with_values(base.study, stepped(unknowns, group, at), here)
             except InputError:
                 if unknown.effect is None or unknown.origin is not None:
                     raise
                 continue
-            there[column] = study, unknown.measures or not unknown.acts_in(base.study.card.run)
-        slopes = drive.slopes(here, list(there.values()), [unknowns[column].step for column in there])
+            there[group] = study, unknown.measures or not unknown.acts_in(base.study.card.run)
+        changes = drive.changes(here, list(there.values()))
         jacobian = np.full((self.drives[number].size, len(unknowns)), np.nan)
-        if slopes is None:
+        if changes is None:
             return np.array([NOT_FOLLOWED]), jacobian
-        for column, slope in zip(there, slopes, strict=True):
-            if slope is not None:
-                jacobian[:, column] = self.blocks(number, base.grid, slope)
+        parts = self.drives[number].parts()
+        for group, change in zip(there, changes, strict=True):
+            if change is None:
+                continue
+            blocks = self.blocks(number, base.grid, change)
+            for column in group:
+                unknown = unknowns[column]
+                rows = slice(None) if len(group) == 1 else parts.get(unknown.only_sensor or "", slice(0))
+                jacobian[:, column] = 0.0
+                jacobian[rows, column] = blocks[rows] / unknown.step
         return np.array([FOLLOWED]), jacobian
 
     @functools.cached_property

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from tyrefem.conduction.sensitivity import Perturbed, Tangents, tangents
 from tyrefem.diagnose.forward.fixed_step import FixedStepRun, run_of_tyre
+from tyrefem.diagnose.forward.step_groups import step_groups, stepped
 from tyrefem.diagnose.unknowns.unknown import Unknown
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
@@ -28,7 +29,8 @@ class ReadingSensitivities:
 
     Parameters
     ----------
-    again : number of an unknown -> second simulation or measurement with the unknown one step further.
+    again : numbers of unknowns -> second simulation or measurement with them one step further; of several, see
+        `step_groups`, each changes the reading of its sensor only.
     columns : numbers of the other unknowns. tangents : dT/dx of these unknowns, in this order.
     moved : number of an unknown that moves one sensor -> the sensor, and the direction (0: along, 1: in depth).
     failed : numbers of unknowns with which no tyre can be built; their sensitivities are NaN.
@@ -36,7 +38,7 @@ class ReadingSensitivities:
 
     base: FixedStepRun
     unknowns: tuple[Unknown, ...]
-    again: Mapping[int, FixedStepRun]
+    again: Mapping[tuple[int, ...], FixedStepRun]
     columns: Sequence[int]
     tangents: Tangents | None
     failed: Sequence[int] = ()
@@ -56,10 +58,13 @@ class ReadingSensitivities:
         for column, (sensor, direction) in self.moved.items():
             if sensor in slopes:
                 slopes[sensor][:, column] = self._over_places[sensor][:, direction]
-        for column, other in self.again.items():
+        for group, other in self.again.items():
             for sensor in sensors:
                 change = other.readings[sensor] - base.readings[sensor]
-                slopes[sensor][:, column] = change / self.unknowns[column].step
+                for column in group:
+                    unknown = self.unknowns[column]
+                    if len(group) == 1 or unknown.only_sensor == sensor:
+                        slopes[sensor][:, column] = change / unknown.step
         if self.tangents is not None:
             for sensor, of_tangents in self._from_tangents(self.tangents, sensors).items():
                 slopes[sensor][:, self.columns] = of_tangents
@@ -103,22 +108,24 @@ def sensitivities_about(
     ------
     InputError : no tyre can be built with an unknown that is no further effect.
     """
-    again: dict[int, FixedStepRun] = {}
+    again: dict[tuple[int, ...], FixedStepRun] = {}
     failed: list[int] = []
     columns: list[int] = []
     perturbed: list[Perturbed] = []
     moved: dict[int, tuple[str, int]] = {}
     swapped = any(effect.overrides("channel") for effect in base.study.effects)
-    for column, unknown in enumerate(unknowns):
-        if not unknown.acts_in(base.study.card.run):
-            continue
-        if not swapped and (move := unknown.moves_sensor) is not None:
-            moved[column] = move
-            continue
+    acting = [column for column, unknown in enumerate(unknowns) if unknown.acts_in(base.study.card.run)]
+    if not swapped:
+        moved = {column: move for column in acting if (move := unknowns[column].moves_sensor) is not None}
+    still = [column for column in acting if column not in moved]
+    for numbers in step_groups([unknowns[column] for column in still], base.study):
+        group = tuple(still[number] for number in numbers)
+        column, *_ = group
+        unknown = unknowns[column]
         try:
-            study = study_of({**at, unknown: at.get(unknown, 0.0) + unknown.step})
+            study = study_of(stepped(unknowns, group, at))
             if unknown.measures:
-                again[column] = base.as_measured_by(study)
+                again[group] = base.as_measured_by(study)
                 continue
             tyre = RollingTyre(study, base.tyre)
             # The state of an effect adds unknowns that the base solution does not have.
@@ -126,11 +133,11 @@ def sensitivities_about(
                 perturbed.append(Perturbed(tyre.problem, unknown.step, tyre.drive.initial))
                 columns.append(column)
             else:
-                again[column] = run_of_tyre(study, tyre, every=base.every)
+                again[group] = run_of_tyre(study, tyre, every=base.every)
         except InputError:
             if unknown.effect is None or unknown.origin is not None:
                 raise
-            failed.append(column)
+            failed += group
     derivatives: Tangents | None = None
     try:
         derivatives = _tangents(base, perturbed, double=double)

@@ -109,10 +109,8 @@ class ReducedDrive:
                 readings[number] = self.read(studies[number], part.batch.balances[place], states[:, place])
         return readings, not_followed
 
-    def slopes(
-        self, here: StudyData, there: Sequence[tuple[StudyData, bool]], steps: Sequence[float]
-    ) -> list[Readings | None] | None:
-        """d(reading)/dx from the studies ``there``, each one step from ``here``; None if ``here`` is not reducible.
+    def changes(self, here: StudyData, there: Sequence[tuple[StudyData, bool]]) -> list[Readings | None] | None:
+        """Readings of the studies ``there`` minus those of ``here``; None if ``here`` is not reducible.
 
         All studies are integrated as one batch with the same time steps, so that differences of short steps are smooth.
         A study that does not fit into this batch has None in the list.
@@ -136,12 +134,12 @@ class ReducedDrive:
             return self.read(study, balances[where], states[:, where])
 
         first = reading(here, place[0])
-        slopes: list[Readings | None] = []
-        for number, ((study, _), step) in enumerate(zip(there, steps, strict=True)):
+        changes: list[Readings | None] = []
+        for number, (study, _) in enumerate(there):
             where = at.get(number, place[0])
             changed = None if where is None else reading(study, where)
-            slopes.append(changed and {name: (changed[name] - first[name]) / step for name in first})
-        return slopes
+            changes.append(changed and {name: changed[name] - first[name] for name in first})
+        return changes
 
     def _together(self, tyres: Sequence[RollingTyre]) -> tuple[list[int], BatchSolution] | None:
         """Numbers and solution of the tyres in one batch with the first; None if the first is not reducible."""

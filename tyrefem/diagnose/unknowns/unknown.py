@@ -125,6 +125,11 @@ class Unknown:
             return None
         return dict(self.choice)["sensor"], ("along", "deeper").index(self.parameter.name)
 
+    @property
+    def only_sensor(self) -> str | None:
+        """The sensor whose reading is all that the unknown changes, if no channels are swapped; None: more changes."""
+        return None if self.effect not in OF_SENSORS else dict(self.choice)["sensor"]
+
     def value(self, x: float) -> float:
         """The value of the parameter, SI; for a base number its factor."""
         if self.parameter is None:
