@@ -30,8 +30,9 @@ from tyrefem.diagnose.settings import DiagnosisSettings
 from tyrefem.diagnose.unknowns.unknown import base_unknowns, with_values
 from tyrefem.diagnose.verdicts.verdict import NO_GAP, PARTLY, UNEXPLAINED
 from tyrefem.diagnose.words.headline import headline
+from tyrefem.diagnose.words.missing_heat import missing_heat_words
 from tyrefem.diagnose.words.record import record
-from tyrefem.diagnose.words.sentences import missing_heat_words, verdict_words
+from tyrefem.diagnose.words.sentences import verdict_words
 from tyrefem.diagnose.words.set_posteriors import posterior_record
 from tyrefem.plan.beliefs import diagnosed_beliefs, stored_beliefs
 from tyrefem.reports.diagnosis import page

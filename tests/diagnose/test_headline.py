@@ -31,7 +31,8 @@ from tyrefem.diagnose.numbers import percent
 from tyrefem.diagnose.unknowns.heat_patches import OUTER
 from tyrefem.diagnose.unknowns.unknown import Unknown
 from tyrefem.diagnose.verdicts.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, PARTLY, UNEXPLAINED, certain_members
-from tyrefem.diagnose.words.headline import QUESTIONS, corrections, headline, label
+from tyrefem.diagnose.words.corrections import corrections
+from tyrefem.diagnose.words.headline import QUESTIONS, headline, label
 from tyrefem.diagnose.words.result_tables import rms_table
 from tyrefem.diagnose.words.sentences import noise_words, verdict_words
 from tyrefem.diagnose.words.support import alone_words, stated_words, support_words

@@ -14,7 +14,8 @@ from hidden import COARSE_MESH, FINER_MESH, HASTY, measure, study
 
 from tyrefem.diagnose.verdicts.verdict import IDENTIFIED, PARTLY, UNEXPLAINED
 from tyrefem.diagnose.words.heat import inside_share
-from tyrefem.diagnose.words.sentences import missing_heat_words, verdict_words
+from tyrefem.diagnose.words.missing_heat import missing_heat_words
+from tyrefem.diagnose.words.sentences import verdict_words
 from tyrefem.reports.diagnosis_law import leading_signatures
 from tyrefem.reports.diagnosis_missing import by_run, drawn_sources
 

@@ -25,9 +25,10 @@ from tyrefem.diagnose.verdicts.verdict import (
     judge,
     ranked,
 )
+from tyrefem.diagnose.words.effects import effect_words
 from tyrefem.diagnose.words.heat import NOT_CLEAR
 from tyrefem.diagnose.words.result_tables import competing_sets, inclusion_probability
-from tyrefem.diagnose.words.sentences import effect_words, verdict_words
+from tyrefem.diagnose.words.sentences import verdict_words
 
 
 def test_confounded_names_the_rivals_and_what_would_decide(case: Case, tmp_path: Path) -> None:
@@ -110,11 +111,11 @@ def test_a_doubt_stands_beside_what_the_fitted_runs_say(case: Case) -> None:
 def test_a_colder_road_is_said_to_be_colder(case: Case) -> None:
     d = case.diagnosis
     (member,) = d.best.members
-    assert effect_words(member, d.best).startswith("The road is warmer than stated")
+    assert effect_words(d, member).startswith("The road is warmer than stated")
     mean = d.best.posterior.mean.copy()
     mean[d.best.unknowns.index(member.amplitudes[0])] *= -1
     colder = replace(d.best, posterior=replace(d.best.posterior, mean=mean))
-    assert effect_words(member, colder).startswith("The road is colder than stated (")
+    assert effect_words(replace(d, best=colder), member).startswith("The road is colder than stated (")
 
 
 def test_unexplained_says_what_the_amended_study_has_and_what_to_do_next(case: Case) -> None:

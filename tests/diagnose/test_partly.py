@@ -13,7 +13,8 @@ from tyrefem.diagnose import DiagnosisData
 from tyrefem.diagnose.verdicts.prior_sensitivity import FACTORS, PROBABILITY
 from tyrefem.diagnose.verdicts.verdict import PARTLY
 from tyrefem.diagnose.words.headline import headline
-from tyrefem.diagnose.words.sentences import missing_heat_words, verdict_words
+from tyrefem.diagnose.words.missing_heat import missing_heat_words
+from tyrefem.diagnose.words.sentences import verdict_words
 from tyrefem.reports.diagnosis_missing import tells_missing_heat
 
 #: Half waves of ln(heat) along the meridian: up to 65 % more heat at the crown, less at the sidewall.

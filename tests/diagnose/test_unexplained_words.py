@@ -23,9 +23,9 @@ from tyrefem.diagnose.unknowns.energy_shapes import energy_shapes
 from tyrefem.diagnose.unknowns.heat_patches import ALL_LAYERS
 from tyrefem.diagnose.words.discrepancy_record import possible_effects
 from tyrefem.diagnose.words.headline import headline
-from tyrefem.diagnose.words.partly import MOST, explaining_words
 from tyrefem.diagnose.words.record import record
 from tyrefem.diagnose.words.sentences import verdict_words
+from tyrefem.diagnose.words.verdicts.unexplained import MOST, explaining_words
 
 
 def beside_energy(d: DiagnosisData, left: float) -> FittedSet:

@@ -124,7 +124,8 @@ def _tell(diagnosis: Diagnosis, folder: Path, page: Path, resumed: int) -> None:
     """Print the verdict, and where its files are; ``resumed``: simulations of an interrupted diagnosis."""
     from tyrefem.diagnose.words.draft_effect import EFFECTS, draft_effects
     from tyrefem.diagnose.words.headline import QUESTIONS, headline, label
-    from tyrefem.diagnose.words.sentences import missing_heat_words, noise_words
+    from tyrefem.diagnose.words.missing_heat import missing_heat_words
+    from tyrefem.diagnose.words.sentences import noise_words
 
     if resumed:
         say(f"{resumed} simulations of an interrupted diagnosis were reused")

@@ -19,8 +19,8 @@ from tyrefem.diagnose.settings import DiagnosisSettings
 from tyrefem.diagnose.unknowns.candidates import Members, SetPrior, possible
 from tyrefem.diagnose.unknowns.unknown import Unknown, base_unknowns, sensor_unknowns
 from tyrefem.diagnose.verdicts.verdict import NO_GAP
+from tyrefem.diagnose.words.looks import AGAIN
 from tyrefem.diagnose.words.record import AMENDED
-from tyrefem.diagnose.words.sentences import AGAIN
 from tyrefem.diagnose.words.set_posteriors import (
     POSTERIOR,
     SetPosterior,

@@ -15,12 +15,16 @@ from tyrefem.diagnose.unknowns.candidates import key_of
 from tyrefem.diagnose.unknowns.unknown import Unknown
 from tyrefem.diagnose.verdicts.prior_sensitivity import prior_words
 from tyrefem.diagnose.verdicts.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, PARTLY, UNEXPLAINED
-from tyrefem.diagnose.words import sentences
+from tyrefem.diagnose.words.corrections import corrections
 from tyrefem.diagnose.words.discrepancy_record import effect_probability
 from tyrefem.diagnose.words.draft_effect import EFFECTS, draft_effects
-from tyrefem.diagnose.words.headline import QUESTIONS, corrections, headline, label
+from tyrefem.diagnose.words.effects import effect_amounts, effect_sentence
+from tyrefem.diagnose.words.headline import QUESTIONS, headline, label
+from tyrefem.diagnose.words.looks import AGAIN
+from tyrefem.diagnose.words.next_steps import next_words
 from tyrefem.diagnose.words.record import AMENDED, record, where
 from tyrefem.diagnose.words.result_tables import candidate_rows, finite, history_table, set_rows, where_table
+from tyrefem.diagnose.words.sentences import verdict_words
 from tyrefem.diagnose.words.set_posteriors import POSTERIOR, posterior_record
 from tyrefem.inputs.changes import value_at
 from tyrefem.inputs.uncertain_numbers import left_out
@@ -33,7 +37,7 @@ from tyrefem.reports.diagnosis_law import law_block
 from tyrefem.reports.diagnosis_missing import tells_missing_heat
 from tyrefem.reports.diagnosis_summary import SUMMARY, summary
 from tyrefem.reports.template import embedded, rendered
-from tyrefem.reports.words import number
+from tyrefem.reports.words import number, shortened
 
 if TYPE_CHECKING:
     from tyrefem.diagnose.diagnosis import DiagnosisData
@@ -45,7 +49,7 @@ _FILES = ("verdict.json", POSTERIOR, AMENDED, "difference.txt", "where.csv", "hi
 #: Largest number of looks at the same data.
 MOST_LOOKS = 9
 #: Files that `save` may write.
-FILES = tuple(f"{sentences.AGAIN}/" * look + name for look in range(MOST_LOOKS) for name in _FILES)
+FILES = tuple(f"{AGAIN}/" * look + name for look in range(MOST_LOOKS) for name in _FILES)
 #: Number of rows shown; the rest can be unfolded.
 SHOWN = 12
 #: Smallest gain that gets a row, ln of odds.
@@ -84,7 +88,7 @@ def save(d: DiagnosisData, folder: str | Path, workers: Workers = 1) -> Path:
             (temporary / name).write_bytes(picture)
         (temporary / PAGE).write_text(page(d, drawn, version=tyrefem.__version__), encoding="utf-8")
     if d.again is not None and d.again.verdict != NO_GAP:
-        save(d.again, folder / sentences.AGAIN, workers)
+        save(d.again, folder / AGAIN, workers)
     return folder / PAGE
 
 
@@ -97,7 +101,7 @@ def page(d: DiagnosisData, images: Mapping[str, bytes], *, version: str) -> str:
         version=version,
         label=label(d),
         headline=list(zip(QUESTIONS, headline(d), strict=True)),
-        sentences=sentences.verdict_words(d),
+        sentences=verdict_words(d),
         place=place,
         numbers=_numbers(d),
         named=_named(d),
@@ -106,8 +110,8 @@ def page(d: DiagnosisData, images: Mapping[str, bytes], *, version: str) -> str:
         where=_where(d),
         corrections=_corrections(d),
         difference=difference(d.original, d.study),
-        reasons=[sentences.shortened(reason) for reason in d.judgement.reasons],
-        further=sentences.next_words(d),
+        reasons=[shortened(reason) for reason in d.judgement.reasons],
+        further=next_words(d),
         offered_sensors=_offers(d, "sensors", "place", "run"),
         offered_drives=_offers(d, "drives", "drive", "sensor"),
         assumed=_assumed(d),
@@ -147,10 +151,10 @@ def _named(d: DiagnosisData) -> list[dict[str, Any]]:
         {
             "key": member.key,
             "probability": percent(effect_probability(d, member)),
-            "sentence": sentences.effect_sentence(member, d.best),
+            "sentence": effect_sentence(member, d.best),
             "source": member.effect.source,
             "amounts": [
-                *sentences.effect_amounts(member, d.best),
+                *effect_amounts(member, d.best),
                 *([d.movements[member].words] if member in d.movements else []),
             ],
         }
@@ -195,7 +199,7 @@ def _candidate(row: Mapping[str, Any]) -> dict[str, str]:
         "parameters": "; ".join(
             amount(entry["value"], entry["sd"], entry["unit"]) for entry in row["parameters"].values()
         ),
-        "confounded": sentences.shortened("; ".join(row["confounded_with"])),
+        "confounded": shortened("; ".join(row["confounded_with"])),
         **_fitness(row),
     }
 

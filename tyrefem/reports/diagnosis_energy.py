@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from tyrefem.diagnose.beside.discrepancy import ENERGY
 from tyrefem.diagnose.unknowns.energy_shapes import SHAPE
 from tyrefem.diagnose.verdicts.verdict import PARTLY, UNEXPLAINED
-from tyrefem.diagnose.words.partly import energy_shares
+from tyrefem.diagnose.words.strain_energy import energy_shares
 from tyrefem.reports.diagnosis_missing import draw_zones
 from tyrefem.reports.figures.style import FONT, INK, PALETTE, QUIET, TITLE, add_axes, figure, tidy, title
 

@@ -10,12 +10,15 @@ from typing import TYPE_CHECKING
 
 from tyrefem.diagnose.numbers import correction_amount, correction_subject, percent
 from tyrefem.diagnose.verdicts.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, PARTLY, UNEXPLAINED
+from tyrefem.diagnose.words.corrections import corrections
 from tyrefem.diagnose.words.discrepancy_record import effect_probability
-from tyrefem.diagnose.words.headline import QUESTIONS, corrections, headline, label
+from tyrefem.diagnose.words.effects import effect_amounts, effect_sentence
+from tyrefem.diagnose.words.headline import QUESTIONS, headline, label
 from tyrefem.diagnose.words.heat import course_words, source_amount, source_place
 from tyrefem.diagnose.words.law import law_words
+from tyrefem.diagnose.words.next_steps import next_words
 from tyrefem.diagnose.words.result_tables import set_rows
-from tyrefem.diagnose.words.sentences import effect_amounts, effect_sentence, next_words, noise_words
+from tyrefem.diagnose.words.sentences import noise_words
 from tyrefem.output import versions
 from tyrefem.reports.diagnosis_gap import gap_figure
 from tyrefem.reports.diagnosis_missing import tells_missing_heat

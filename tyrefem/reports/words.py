@@ -131,3 +131,13 @@ def ice_lines(rows: tuple[IceRow, ...]) -> Iterator[str]:
             f"{100 * off / row.corrected:+6.1f}{row.rise_at(pressure):13.1f}{row.needed_pressure / 1e3:11.0f}{note}"
         )
     yield "same load: equation 12 with the pressure of the first row; needs: pressure for the corrected rise"
+
+
+def shortened(reason: str, most: int = 4) -> str:
+    """A reason with at most ``most`` items of its list.
+
+    >>> shortened("cannot distinguish: a; b; c; d", 2)
+    'cannot distinguish: a; b; and 2 more'
+    """
+    parts = reason.split("; ")
+    return "; ".join([*parts[:most], f"and {len(parts) - most} more"]) if len(parts) > most + 1 else reason

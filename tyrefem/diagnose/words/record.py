@@ -17,8 +17,9 @@ from tyrefem.diagnose.words.discrepancy_record import (
 from tyrefem.diagnose.words.headline import headline, label
 from tyrefem.diagnose.words.heat import is_told, source_place, source_words
 from tyrefem.diagnose.words.law_record import law_record
+from tyrefem.diagnose.words.looks import look_folder
 from tyrefem.diagnose.words.result_tables import candidate_rows, clearest, parameters, set_rows
-from tyrefem.diagnose.words.sentences import look_folder, verdict_words
+from tyrefem.diagnose.words.sentences import verdict_words
 from tyrefem.inputs.study_plugins import plugin_summary
 from tyrefem.output import jsonable, versions
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from tyrefem.diagnose.numbers import percent
 from tyrefem.diagnose.words.heat import station_words
-from tyrefem.diagnose.words.partly import beyond_noise
+from tyrefem.diagnose.words.strain_energy import beyond_noise
 
 if TYPE_CHECKING:
     from tyrefem.diagnose.beside.law_trials import BetterLaw
