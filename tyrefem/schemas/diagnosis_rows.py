@@ -296,7 +296,7 @@ DIAGNOSIS_INNER: dict[str, Keys] = {
         "share": "number: Of their gain in evidence.", **_PLACE_OF_LAW,
         "exponents": "list: Of every variable that varies.", "switch": "text: When the heat acts.",
         "switch_probabilities": "table: Switch -> probability.", "time_s": "number?: When it begins or ends.",
-        "time_sd_s": "number?: Its standard deviation.", "alternatives": "list: Other laws within 2.3 nats.",
+        "time_sd_s": "number?: Its standard deviation.", "alternatives": "list: Other laws within 4.6 nats.",
         "hardly_vary": "list: Variables that hardly vary.", "vary_together": "list: Pairs that vary together.",
         "signatures": "list: Effects and mechanisms, most alike first.",
         "draft_effect": "text?: File of the draft effect.", "places": "list: Places that competed.",
