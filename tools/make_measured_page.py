@@ -17,10 +17,8 @@ import numpy as np
 from measured_comparison import (
     ECF,
     PASSENGER,
-    RE71R,
     ROOT,
     TABLES,
-    UNITS,
     Comparison,
     aircraft_facts,
     comparison,
@@ -39,11 +37,6 @@ BEGIN, END = "<!-- made by tools/make_measured_page.py -->", "<!-- end -->"
 def _lines(head: str, rows: Iterable[Sequence[object]]) -> list[str]:
     columns = head.count("|") + 1
     return [f"| {head} |", "|" + "---|" * columns, *(f"| {' | '.join(map(str, row))} |" for row in rows), ""]
-
-
-def _name(quantity: str) -> str:
-    name = {"rolling resistance": "rolling resistance coefficient"}.get(quantity, quantity)
-    return f"{name}, {UNITS[quantity]}" if quantity in UNITS else name
 
 
 def _rms(rows: Sequence[Comparison]) -> float:
@@ -82,33 +75,6 @@ def motions(rows: Sequence[Comparison]) -> list[str]:
             cells += [spread, f"{np.sqrt(np.mean(errors**2)):.1f}"]
         lines.append((tyre, quantity, len(part), *cells))
     return _lines("tyre | quantity | rows | linear: E, % | rms, % | large: E, % | rms, %", lines)
-
-
-def every_row(rows: Sequence[Comparison]) -> list[str]:
-    """Every row of the 205/60R15 and the RE-71R."""
-    head = "tyre | quantity | kPa | N | measured | computed ± u | motion | linear | E, % | u_val, % | verdict"
-    lines = [
-        (
-            row.tyre.removeprefix("255/40R17 "), _name(row.quantity), f"{row.kilopascal:.0f}", f"{row.newton:.0f}",
-            f"{row.measured:.4g}", f"{row.computed:.4g} ± {row.u_computed:.2g}", row.motion, f"{row.linear:.4g}",
-            f"{row.deviation:+.1f}", f"{row.u_val:.1f}", row.verdict,
-        )
-        for row in rows
-        if row.tyre != ECF
-    ]  # fmt: skip
-    return _lines(head, lines)
-
-
-def every_print(rows: Sequence[Comparison]) -> list[str]:
-    """Every ink print: computed over measured value and the deviation."""
-    quantities = ("length", "width", "gross area", "net area")
-    cases = dict.fromkeys((row.kilopascal, row.newton) for row in rows if row.tyre == ECF)
-    lines = []
-    for case in sorted(cases):
-        part = {row.quantity: row for row in rows if row.tyre == ECF and (row.kilopascal, row.newton) == case}
-        cells = [f"{part[q].computed:.0f} / {part[q].measured:.0f} ({part[q].deviation:+.0f} %)" for q in quantities]
-        lines.append((f"{case[0]:.0f}", f"{case[1]:.0f}", *cells))
-    return _lines("kPa | N | " + " | ".join(_name(quantity) for quantity in quantities), lines)
 
 
 def aircraft() -> list[str]:
@@ -183,10 +149,6 @@ def page_tables() -> str:
     sections = {
         "": summary(rows),
         "Both motions: deviation from the measured values.": motions(rows),
-        f"Every row of the {PASSENGER} and the {RE71R}; u: standard uncertainty of the computed value.": every_row(
-            rows
-        ),
-        f"Every ink print of the {ECF}: computed / measured.": every_print(rows),
         "Bias aircraft tyres by the load law of NASA TR R-64.": aircraft(),
         f"The standing {PASSENGER} at 220 kPa and 4000 N, pushed along the road. A small push has the moduli at 0.1 % "
         "of shear ([why](method/rolling-friction.md#standing-tyre)).": standing(),
