@@ -27,9 +27,6 @@ MEASURED = {"deflection": 0.03, "stiffness": 0.03, "length": 0.03, "width": 0.05
 TOLERANCE, TOLERANCES = 0.001, {"mass": 0.0, "rolling radius": 0.0}
 #: Of a rise with pressure: two deflections known to half a per cent at pressures a fifth apart; inputs: estimate.
 RISE = (0.05, 0.05)
-#: Quantities of the page's tables and their units.
-UNITS = {"deflection": "mm", "stiffness": "N/mm", "length": "mm", "width": "mm", "rolling radius": "mm", "mass": "kg",
-         "gross area": "cm²", "net area": "cm²"}  # fmt: skip
 
 
 @dataclass(frozen=True)
