@@ -41,9 +41,9 @@ from tyrefem.mechanics.rolling.tread_influence import TreadInfluence
 from tyrefem.mechanics.solid.body import Body, Prestressed
 from tyrefem.mechanics.solid.compounds import determinant, neo_hookean
 from tyrefem.mechanics.solid.cords import CordLayer
-from tyrefem.mechanics.solid.elements import components, outer
 from tyrefem.mechanics.solid.finite_law import BodyLaw
 from tyrefem.mechanics.solid.parts import RegionMaterial
+from tyrefem.mechanics.solid.six_components import components, outer
 
 Array = NDArray[np.float64]
 ROOT = Path(__file__).resolve().parents[1]

@@ -8,7 +8,7 @@ import pytest
 from tyrefem.errors import InputError
 from tyrefem.mechanics.solid.compounds import Compound, mooney_rivlin, neo_hookean, yeoh
 from tyrefem.mechanics.solid.cords import CordLayer, lifted_angle, lifted_ends
-from tyrefem.mechanics.solid.elements import SYMMETRIC_UNIT, UNIT
+from tyrefem.mechanics.solid.six_components import SYMMETRIC_UNIT, UNIT
 
 pytestmark = pytest.mark.fast
 

@@ -14,27 +14,25 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.mechanics.solid.six_components import FIRST, PLACE, SECOND
+
 Array = NDArray[np.float64]
-#: The six components of a symmetric tensor in (r, z, t).
-PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
-_I, _J = (np.array(index) for index in zip(*PAIRS, strict=True))
-_PLACE = np.array([[0, 3, 4], [3, 1, 5], [4, 5, 2]])
 
 
 def tensors(components: Array) -> Array:
     """(..., 3, 3) of tensor components (..., 6): rr, zz, tt, rz, rt, zt; shears are not doubled."""
-    return np.asarray(np.asarray(components)[..., _PLACE])
+    return np.asarray(np.asarray(components)[..., PLACE])
 
 
 def six(matrices: Array) -> Array:
     """(..., 6) of symmetric tensors (..., 3, 3)."""
-    return np.asarray(np.asarray(matrices)[..., _I, _J])
+    return np.asarray(np.asarray(matrices)[..., FIRST, SECOND])
 
 
 def products(normals: Array) -> Array:
     """(..., 6) weights with which six tensor components give n . a n of unit normals (..., 3)."""
     normals = np.asarray(normals, dtype=float)
-    return np.asarray(normals[..., _I] * normals[..., _J] * np.where(_I == _J, 1.0, 2.0))
+    return np.asarray(normals[..., FIRST] * normals[..., SECOND] * np.where(FIRST == SECOND, 1.0, 2.0))
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from tyrefem.mechanics.footprint.elements import COMPONENTS, WheelAngles
 from tyrefem.mechanics.footprint.harmonics import Harmonics, along_wall
 from tyrefem.mechanics.solid.finite_law import FiniteLaw, GreenLaw, StressResponse
+from tyrefem.mechanics.solid.six_components import PAIRS
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -168,7 +169,7 @@ class NonlinearForces:
         h = np.moveaxis(h, 1, -1).reshape(len(h), *h.shape[2:], 3, 3)
         (cos, _, sin), _ = self.round.waves
         rows = []
-        for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)):
+        for i, j in PAIRS:
             part = (1 if i == j else 2) * (h[..., i] * h[..., j]).sum(axis=-1) / 2
             odd = (i == 2) != (j == 2)
             rows.append(np.moveaxis(part @ (self.round.shares * (sin if odd else cos)), -1, 0))

@@ -15,6 +15,7 @@ from tyrefem.mechanics.footprint.complementarity import contact_forces
 from tyrefem.mechanics.footprint.elements import COMPONENTS, SectionElements
 from tyrefem.mechanics.solid.body import Prestressed
 from tyrefem.mechanics.solid.elements import INTORDER
+from tyrefem.mechanics.solid.six_components import PAIRS
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -96,7 +97,7 @@ class Hexahedra:
         """(n_elements, n_points, 6, 81) strain per degree of freedom."""
         h, value = self._gradients
         strains = np.zeros((*value.shape[:2], 6, 27, COMPONENTS))
-        for row, (i, j) in enumerate(((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))):
+        for row, (i, j) in enumerate(PAIRS):
             strains[..., row, :, :] = h[..., i, j, :, :] if i == j else h[..., i, j, :, :] + h[..., j, i, :, :]
         return strains.reshape(*value.shape[:2], 6, -1)
 

@@ -16,10 +16,11 @@ from numpy.typing import NDArray
 from tyrefem.brief import Brief
 from tyrefem.errors import InputError, nearest
 from tyrefem.mechanics.solid.compounds import determinant
-from tyrefem.mechanics.solid.elements import SYMMETRIC_UNIT, UNIT, Indices, PressedWall, Rings, outer, over
+from tyrefem.mechanics.solid.elements import Indices, PressedWall, Rings
 from tyrefem.mechanics.solid.finite_law import BodyLaw
 from tyrefem.mechanics.solid.parts import RegionMaterial
 from tyrefem.mechanics.solid.rim import Flange
+from tyrefem.mechanics.solid.six_components import SYMMETRIC_UNIT, UNIT, outer, over
 
 if TYPE_CHECKING:
     from tyrefem.mechanics.solid.centrifugal import Centrifugal

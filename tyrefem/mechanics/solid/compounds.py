@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.errors import InputError
-from tyrefem.mechanics.solid.elements import SYMMETRIC_UNIT, UNIT, box, components, outer, over
+from tyrefem.mechanics.solid.six_components import SYMMETRIC_UNIT, UNIT, box, components, outer, over
 
 Array = NDArray[np.float64]
 #: Default of bulk modulus over shear modulus: Poisson's ratio 0.495.

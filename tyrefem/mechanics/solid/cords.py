@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.errors import InputError
-from tyrefem.mechanics.solid.elements import components, outer
+from tyrefem.mechanics.solid.six_components import components, outer
 
 Array = NDArray[np.float64]
 

@@ -15,14 +15,11 @@ from tyrefem.mechanics.solid.compounds import Compound, determinant
 from tyrefem.mechanics.solid.cords import CordLayer
 from tyrefem.mechanics.solid.elements import Indices, Rings
 from tyrefem.mechanics.solid.parts import RegionMaterial
+from tyrefem.mechanics.solid.six_components import PAIRS, PLACE
 from tyrefem.mechanics.solid.tread_blocks import TreadBlocks
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
-#: Index of a tensor's component among the six.
-PLACE = np.array([[0, 3, 4], [3, 1, 5], [4, 5, 2]])
-#: The six components.
-PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
 #: Number of points computed together: their tensors stay in the processor's cache.
 TOGETHER = 4000
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.mechanics.solid.elements import components, outer
+from tyrefem.mechanics.solid.six_components import components, outer
 
 Array = NDArray[np.float64]
 
