@@ -39,9 +39,9 @@ from tyrefem.mechanics.rolling.roll import WheelOnRoad, wheel_on_road
 from tyrefem.mechanics.rolling.slip_curve import slip_stiffness
 from tyrefem.mechanics.rolling.tread_influence import TreadInfluence
 from tyrefem.mechanics.solid.body import Body, Prestressed
+from tyrefem.mechanics.solid.body_law import BodyLaw
 from tyrefem.mechanics.solid.compounds import determinant, neo_hookean
 from tyrefem.mechanics.solid.cords import CordLayer
-from tyrefem.mechanics.solid.finite_law import BodyLaw
 from tyrefem.mechanics.solid.parts import RegionMaterial
 from tyrefem.mechanics.solid.six_components import components, outer
 

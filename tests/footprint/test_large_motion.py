@@ -16,8 +16,8 @@ from tyrefem.mechanics.footprint.example_tyre import PlainTyre
 from tyrefem.mechanics.footprint.footprint import Footprint
 from tyrefem.mechanics.footprint.harmonic_balance import Balance
 from tyrefem.mechanics.footprint.nonlinear import NonlinearForces
+from tyrefem.mechanics.solid.body_law import BodyLaw
 from tyrefem.mechanics.solid.compounds import Compound
-from tyrefem.mechanics.solid.finite_law import BodyLaw
 from tyrefem.mechanics.solid.inflation import Inflation, inflate
 
 COARSE = 18e-3

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from tyrefem.mechanics.footprint.elements import COMPONENTS, WheelAngles
 from tyrefem.mechanics.footprint.harmonics import Harmonics, along_wall
-from tyrefem.mechanics.solid.finite_law import FiniteLaw, GreenLaw, StressResponse
+from tyrefem.mechanics.solid.finite_law import FiniteLaw, StressResponse
+from tyrefem.mechanics.solid.green_law import GreenLaw
 from tyrefem.mechanics.solid.six_components import PAIRS
 
 Array = NDArray[np.float64]

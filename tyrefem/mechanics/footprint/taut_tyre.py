@@ -16,7 +16,7 @@ from tyrefem.mechanics.footprint.elements import COMPONENTS
 from tyrefem.mechanics.footprint.harmonics import SYMMETRIC, Harmonics
 from tyrefem.mechanics.footprint.tyre_on_road import TyreOnRoad
 from tyrefem.mechanics.solid.body import Prestressed
-from tyrefem.mechanics.solid.finite_law import BodyLaw
+from tyrefem.mechanics.solid.body_law import BodyLaw
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]

@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
 from tyrefem.errors import InputError, nearest
+from tyrefem.mechanics.solid.body_law import BodyLaw
 from tyrefem.mechanics.solid.compounds import determinant
 from tyrefem.mechanics.solid.elements import Indices, PressedWall, Rings
-from tyrefem.mechanics.solid.finite_law import BodyLaw
 from tyrefem.mechanics.solid.parts import RegionMaterial
 from tyrefem.mechanics.solid.rim import Flange
 from tyrefem.mechanics.solid.six_components import SYMMETRIC_UNIT, UNIT, outer, over

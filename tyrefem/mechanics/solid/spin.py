@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.mechanics.solid.body import Prestressed
+from tyrefem.mechanics.solid.body_law import BodyLaw
 from tyrefem.mechanics.solid.elements import Rings
-from tyrefem.mechanics.solid.finite_law import BodyLaw, StressResponse
+from tyrefem.mechanics.solid.finite_law import StressResponse
 
 Array = NDArray[np.float64]
 
