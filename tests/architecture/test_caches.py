@@ -22,7 +22,7 @@ OPEN: tuple[str, ...] = ()
 ALLOWED = {
     "conduction/direct_sensitivity.py: id(": "compares loads within one call, while all of them live",
     "reduced/sampled_source.py: id(": "tables laws within one constructor, while all of them live",
-    "reports/inputs.py: id(": "names the entries of cards within one call, while all of them live",
+    "reports/materials.py: id(": "names the entries of cards within one call, while all of them live",
     "mechanics/stored_cycles.py: id(": "names the cycles of a schedule within one call, while all of them live",
     "output/__init__.py: _read = {}": "the files that the command in work has read",
     "output/__init__.py: _written = {}": "the folders that the command in work has written to",

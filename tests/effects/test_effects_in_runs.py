@@ -12,7 +12,8 @@ import pytest
 import tyrefem as tf
 from tyrefem.cli import main
 from tyrefem.effects import catalogue
-from tyrefem.reports.inputs import assumptions, effect_rows
+from tyrefem.reports.assumptions import assumptions
+from tyrefem.reports.inputs import effect_rows
 
 HOT: dict[str, Any] = {"name": "hot-road", "warmer_by": "20 delta_degC"}
 SHORT = {"drive.phases": [{"name": "rolling", "duration": "60 s"}], "mesh.size": "8 mm", "sensors": {}}

@@ -12,7 +12,7 @@ import pytest
 import tyrefem as tf
 from tyrefem.geometry.place_names import place
 from tyrefem.reports.figures import pictures
-from tyrefem.reports.inputs import material_rows
+from tyrefem.reports.materials import material_rows
 from tyrefem.reports.words import number
 
 VOID = {"meta", "img", "br", "link", "input", "hr"}

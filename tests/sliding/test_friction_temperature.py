@@ -9,7 +9,7 @@ import pytest
 
 import tyrefem as tf
 from tyrefem.api import Result
-from tyrefem.reports.inputs import assumptions
+from tyrefem.reports.assumptions import assumptions
 
 #: Sliding below the speed of the peak: a warmer tread has less friction, from 1.2 at 25 degC to 0.4.
 FALLING = {

@@ -7,7 +7,8 @@ from bias_tyre import bias
 
 import tyrefem as tf
 from tyrefem.mechanics.finite_elements import FiniteElements
-from tyrefem.reports.inputs import assumptions, mechanics_rows
+from tyrefem.reports.assumptions import assumptions
+from tyrefem.reports.inputs import mechanics_rows
 
 SHIPPED = ("passenger-205-55r16", "truck-295-80r22.5", "aircraft-radial", "measured-205-60r15", "measured-255-40r17")
 

@@ -16,16 +16,10 @@ from tyrefem.geometry.place_names import place
 from tyrefem.inputs.study_plugins import plugins_of
 from tyrefem.inputs.wheel_state import wheel_state
 from tyrefem.output import atomic_path, versions
+from tyrefem.reports.assumptions import assumptions
 from tyrefem.reports.explore_link import ExploreLink, explore_link
-from tyrefem.reports.inputs import (
-    assumptions,
-    boundary_rows,
-    effect_rows,
-    material_rows,
-    mechanics_rows,
-    section_sources,
-    study_text,
-)
+from tyrefem.reports.inputs import boundary_rows, effect_rows, mechanics_rows, section_sources, study_text
+from tyrefem.reports.materials import material_rows
 from tyrefem.reports.run_files import loaded_cycle, of_run, summary
 from tyrefem.reports.template import rendered
 from tyrefem.reports.words import number, seconds
