@@ -180,4 +180,4 @@ def test_a_source_is_stated_with_its_times() -> None:
     assert ActingSource(2.0).unknown(patch) == patch
     late = ActingSource(2.0, np.float64(300.04), np.float64(600.0)).unknown(patch)  # type: ignore[arg-type]
     assert late.choice == (("station", "60 mm"), ("begins", "300.0 s"), ("ends", "600.0 s"))
-    assert late.key != patch.key
+    assert late.key == "effects.missing-heat.60 mm.begins 300.0 s.ends 600.0 s.heat"

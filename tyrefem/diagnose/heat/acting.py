@@ -22,6 +22,7 @@ from tyrefem.diagnose.heat.evidence import ProjectedData
 from tyrefem.diagnose.heat.over_time import HeatOverTime
 from tyrefem.diagnose.heat.sources import CLEAR, DatedSource, Place, dated, misfit
 from tyrefem.diagnose.inference.evidence import posterior
+from tyrefem.diagnose.unknowns.heat_patches import at_times, written_times
 from tyrefem.diagnose.unknowns.unknown import Unknown
 
 Array = NDArray[np.float64]
@@ -62,9 +63,8 @@ class ActingSource:
 
     def unknown(self, patch: Unknown) -> Unknown:
         """The patch with these times."""
-        times = {BEGINS: self.begins if self.begins > 0 else math.inf, ENDS: self.ends}
-        choice = tuple((name, f"{round(float(time), 1)!r} s") for name, time in times.items() if math.isfinite(time))
-        return replace(patch, choice=(*patch.choice, *choice), key=".".join((patch.key, *map(" ".join, choice))))
+        begins, ends = (time if 0 < time < math.inf else None for time in (self.begins, self.ends))
+        return at_times(patch, written_times(begins, ends))
 
 
 @dataclass(frozen=True, eq=False)

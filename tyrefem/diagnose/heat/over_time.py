@@ -151,14 +151,11 @@ def _estimated(
         np.array([fine.speed(number, float(t)) > 0 for t in knots]) for number, knots in enumerate(fine.knots)
     )
     cools = any(flags.any() and not flags[int(np.argmax(flags)) :].all() for flags in rolling)
-    named = [
-        (source_unknown(study, settings, *entry), *entry)
-        for source, entry in zip(sources, current, strict=True)
-        if source.clear
-    ]
-    written = bool(named) and all(course.kind in WRITTEN for _, _, course in named)
-    values, sd = values_with_sources(data, nuisance, named) if written else ({}, {})
-    unknowns = tuple(unknown for unknown, _, _ in named) if written else ()
+    clear = [entry for source, entry in zip(sources, current, strict=True) if source.clear]
+    written = all(course.kind in WRITTEN for _, course in clear)
+    named = [(source_unknown(study, settings, *entry), *entry) for entry in clear if written]
+    values, sd = values_with_sources(data, nuisance, named) if named else ({}, {})
+    unknowns = tuple(unknown for unknown, _, _ in named)
     sources.sort(key=lambda source: -abs(source.amount) / source.sd)
     every = [(place, unknown_of[place.station, place.where]) for place in (*places, *layered.values())]
     basis = SourceBasis(data, tuple(current), of_places, fine, coarse, tuple(every), tuple(nuisance), present)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +12,7 @@ from tyrefem.diagnose.heat.evidence import ProjectedData
 from tyrefem.diagnose.heat.sources import Place
 from tyrefem.diagnose.inference.evidence import posterior
 from tyrefem.diagnose.settings import DiagnosisSettings
-from tyrefem.diagnose.unknowns.heat_patches import patch
+from tyrefem.diagnose.unknowns.heat_patches import patch, written_times
 from tyrefem.diagnose.unknowns.unknown import Unknown
 from tyrefem.inputs.study import StudyData
 
@@ -23,12 +22,10 @@ WRITTEN = (CONSTANT, BEGINS, ENDS)
 
 
 def source_unknown(study: StudyData, settings: DiagnosisSettings, place: Place, course: Course) -> Unknown:
-    """The unknown of an effect `missing-heat` or `missing-flux` with the place and the course of a source."""
-    if course.time is None:
-        return patch(study, settings, place.station, place.where)
-    time = f"{round(float(course.time), 1)!r} s"
-    unknown = patch(study, settings, place.station, place.where, ((course.kind, time),))
-    return replace(unknown, key=unknown.key.replace(f".{time}.", f".{course.kind} {time}."))
+    """The unknown of an effect `missing-heat` or `missing-flux` with place and course (of `WRITTEN`) of a source."""
+    switch = {course.kind: course.time}
+    when = written_times(switch.get(BEGINS), switch.get(ENDS))
+    return patch(study, settings, place.station, place.where, when)
 
 
 def values_with_sources(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -44,20 +45,36 @@ def stations(study: StudyData, settings: DiagnosisSettings) -> list[float]:
 
 
 def patch(study: StudyData, settings: DiagnosisSettings, station: float, where: str, when: Choice = ()) -> Unknown:
-    """The unknown heat or flux about a station, beyond what the study states there; ``when``: it begins or ends."""
+    """The unknown heat or flux about a station, beyond what the study states there; ``when``: see `written_times`."""
     spacing = study.section.line.length / settings.stations
     choice: Choice = (("station", f"{station!r} m"), ("width", f"{round(spacing * 0.6, 6)!r} m"))
     if where in SURFACES:
         choice += () if where == OUTER else (("surface", SURFACES[where]),)
-        return _beyond(study, "missing-flux", choice + when, settings.missing_flux)
+        return _beyond(study, "missing-flux", choice, when, settings.missing_flux)
     choice += () if where == ALL_LAYERS else (("region", where),)
-    return _beyond(study, "missing-heat", choice + when, settings.missing_heat)
+    return _beyond(study, "missing-heat", choice, when, settings.missing_heat)
 
 
-def _beyond(study: StudyData, name: str, choice: Choice, sd: float) -> Unknown:
+def _beyond(study: StudyData, name: str, choice: Choice, when: Choice, sd: float) -> Unknown:
     """A patch with its origin at the study's entry of the same choice, if there is one; its sd is that of any patch."""
-    stated = stated_effect(study, name, choice)
-    return of_effect(catalogue()[name], choice, sd, None if stated is None else stated.model_copy(update={"sd": {}}))[0]
+    stated = stated_effect(study, name, choice + when)
+    known = None if stated is None else stated.model_copy(update={"sd": {}})
+    return at_times(of_effect(catalogue()[name], choice, sd, known)[0], when)
+
+
+def written_times(begins: float | None, ends: float | None) -> Choice:
+    """When a patch begins and ends, s, as the choice of its effect states it; None: the drive's begin or end."""
+    times = (("begins", begins), ("ends", ends))
+    return tuple((name, f"{round(float(time), 1)!r} s") for name, time in times if time is not None)
+
+
+def at_times(always: Unknown, when: Choice) -> Unknown:
+    """A patch that acts at all times, limited to some: they stand in its choice, and with their names in its key."""
+    if not when:
+        return always
+    place, _, parameter = always.key.rpartition(".")
+    key = ".".join((place, *map(" ".join, when), parameter))
+    return replace(always, choice=(*always.choice, *when), key=key)
 
 
 def place_of(unknown: Unknown) -> tuple[float, str]:
