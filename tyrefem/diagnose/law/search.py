@@ -58,7 +58,6 @@ class RankedPlace(Brief):
     others: tuple[tuple[Place, Course], ...]
     below: float
     columns: Array
-    data: ProjectedData
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,6 +88,11 @@ class HeatLaw(Brief):
     def law(self) -> PlaceLaw:
         """The best law."""
         return self.ranking[0].law
+
+    @property
+    def data(self) -> ProjectedData:
+        """The data of the best law: those of the basis, with the sources beside it integrated out, too."""
+        return _beside(self.basis.data, self.ranking[0].others)
 
     @property
     def holds(self) -> bool:
@@ -150,7 +154,7 @@ def heat_law(
         of_option = law_data(data, option.columns, place.sd, variables.hats)
         scatter = SeriesScatter(data, option.columns, series)
         law = place_law(of_option, variables, terms, inside=place.inside, scatter=scatter)
-        entry = RankedPlace(place, law, option.others, 0.0, option.columns, data)
+        entry = RankedPlace(place, law, option.others, 0.0, option.columns)
         places = max(len(place.parts), 1)
         ranked.append((law.log_evidence - places * of_place - len(option.others) * of_other, entry))
     top, none = max(score for score, _ in ranked), basis.data.log_evidence

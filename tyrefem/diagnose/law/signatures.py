@@ -75,7 +75,7 @@ def law_signatures(residuals: Residuals, heat: HeatLaw, candidates: Sequence[Can
     cosine of the two responses in the metric P of `ProjectedData`.
     """
     law, best = heat.law, heat.ranking[0]
-    columns, data = best.columns @ (heat.variables.hats @ law.strength()), best.data
+    columns, data = best.columns @ (heat.variables.hats @ law.strength()), heat.data
     origin = residuals.linear(residuals.fitted)
     rows = []
     seen = [candidate for candidate in candidates if not candidate.runs]
@@ -129,7 +129,7 @@ def _mechanisms(heat: HeatLaw) -> list[LawSignature]:
     """Mechanisms with given exponents at the law's place and with its switch, by evidence beside the best law."""
     table = MECHANISMS if heat.place.kind == HEAT else SHARES if heat.place.kind == LOSS else {}
     law, best = heat.law, heat.ranking[0]
-    statistics = best.data.with_sources(best.columns)
+    statistics = heat.data.with_sources(best.columns)
     data = LawData(statistics.gram, statistics.overlap, best.place.sd, heat.variables.hats)
     rows = []
     for words, exponents in table.items():
