@@ -15,7 +15,7 @@ from interrupting import Interrupted, interrupted
 from terminal import NASA, SHORT, TABLES
 
 from tyrefem.cli import main
-from tyrefem.heating_test.card import find
+from tyrefem.heating_test.files import find
 
 #: In the middle of a simulation, of a picture, of a table.
 STEP = "tyrefem.conduction.balance:HeatBalance.remainder:40"

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from tyrefem.cli import main
-from tyrefem.heating_test.card import find
+from tyrefem.heating_test.files import find
 from tyrefem.heating_test.grid import Fineness
 from tyrefem.heating_test.layer_study import merged, study
 from tyrefem.heating_test.readings import matched

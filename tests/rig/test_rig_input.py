@@ -9,7 +9,7 @@ import pytest
 
 from tyrefem.cli import main
 from tyrefem.errors import InputError
-from tyrefem.heating_test.card import find, tables
+from tyrefem.heating_test.files import find, tables
 from tyrefem.rig import load, read
 
 pytestmark = pytest.mark.fast

@@ -8,7 +8,7 @@ from cases import TIMES
 from curved_patch import CurvedPatch, TrueLayer, Truth
 from scipy.special import erfc
 
-from tyrefem.heating_test.card import Clock, since_switch
+from tyrefem.heating_test.clock import Clock, since_switch
 from tyrefem.heating_test.grid import Fineness, PatchGrid
 from tyrefem.heating_test.parameters import at, parameters_of
 from tyrefem.heating_test.readings import view

@@ -166,7 +166,7 @@ def _card(path: Path) -> str:
 
 def _rig_tables(rig: RigCard, path: Path) -> str:
     """Describe the tables beside a rig's card. No table: the rig is simulated only; some of them: an error."""
-    from tyrefem.heating_test.card import tables
+    from tyrefem.heating_test.files import tables
     from tyrefem.rig import read
 
     if not any((path.parent / f"{run}.csv").is_file() for run in rig.runs):

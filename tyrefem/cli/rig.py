@@ -36,7 +36,7 @@ def simulate(
 ) -> None:
     """Simulate the sensors' readings in the card's tests: one table per run, pictures."""
     from tyrefem import rig as rigs
-    from tyrefem.heating_test.card import beside
+    from tyrefem.heating_test.files import beside
     from tyrefem.quantity import parse
     from tyrefem.reports.rig import simulation_files, write_simulation
 
@@ -87,7 +87,7 @@ def identify(
 ) -> None:
     """Identify every layer's conductivity and specific heat with 95 % intervals; list what remains undetermined."""
     from tyrefem import rig as rigs
-    from tyrefem.heating_test.card import tables as tables_of
+    from tyrefem.heating_test.files import tables as tables_of
     from tyrefem.heating_test.layer_cards import bases
     from tyrefem.heating_test.verdict import name_in_words, shown
     from tyrefem.reports.rig import FILES, save
@@ -135,7 +135,7 @@ def layers(
 ) -> None:
     """Fit one set of readings with 1, 2, 3 ... layers, to see what more layers improve."""
     from tyrefem import rig as rigs
-    from tyrefem.heating_test.card import tables as tables_of
+    from tyrefem.heating_test.files import tables as tables_of
     from tyrefem.heating_test.layer_study import LayerStudy, fits
     from tyrefem.heating_test.readings import matched
     from tyrefem.reports.rig import LAYER_FILES, save_layer_table, save_layers

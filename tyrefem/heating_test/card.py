@@ -1,24 +1,16 @@
-"""The rig card: layers with priors, laser, phases, surroundings, sensors, runs; and the computed times of a test."""
+"""The rig card: layers with priors, laser, phases, surroundings, sensors, runs."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
-from functools import cached_property
-from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
 from pydantic import Field, GetJsonSchemaHandler, model_validator
 from pydantic_core import CoreSchema
 
-from tyrefem import library
-from tyrefem.cards import Card, PositiveLength, Temperature, Text, read_toml
-from tyrefem.cards.file_kinds import expect_kind
+from tyrefem.cards import Card, PositiveLength, Temperature, Text
 from tyrefem.cards.file_names import check_file_name
 from tyrefem.cards.plausible import CONDUCTIVITY, DENSITY, EMISSIVITY, SPECIFIC_HEAT, Plausible
-from tyrefem.errors import InputError, InputWarning, nearest
+from tyrefem.errors import InputError, InputWarning
 from tyrefem.quantity import Unit
 
 Share = Annotated[float, Unit("1", gt=0, le=1)]
@@ -258,144 +250,3 @@ class RigCard(Card):
         if reach >= self.patch.radius:
             words = f"{1e3 * reach:g} mm from the mark is outside the patch of {1e3 * self.patch.radius:g} mm radius"
             raise InputError(words, field=f"{field}.aside")
-
-
-Array = NDArray[Any]
-
-
-#: Time scale after a switch of the laser, s, and number of steps of a phase in logarithmic time.
-SCALE, STEP = 0.5, 0.16
-
-
-def since_switch(duration: float) -> Array:
-    """Times from 0 to `duration`, dense after the switch: equal steps in ln(1 + t/0.5 s).
-
-    >>> since_switch(1050.0).size
-    49
-    """
-    span = np.log1p(duration / SCALE)
-    return np.asarray(SCALE * np.expm1(np.linspace(0.0, span, max(5, int(np.ceil(span / STEP)) + 1))))
-
-
-@dataclass(frozen=True)
-class Clock:
-    """Computed times of a test up to `end`; index 0 is the time at which the laser is switched on.
-
-    Attributes
-    ----------
-    heating, cooling : times since the switch, s; cooling is empty if the test ends before.
-    """
-
-    phases: HeatingPhases
-    end: float
-
-    @cached_property
-    def heating(self) -> Array:
-        """Times since the laser was switched on, s."""
-        return since_switch(min(self.phases.heating, max(self.end - self.phases.idle, 1.0)))
-
-    @cached_property
-    def cooling(self) -> Array:
-        """Times since the laser was switched off, s, without 0."""
-        left = self.end - self.phases.idle - self.phases.heating
-        return since_switch(left)[1:] if left > 0 else np.zeros(0)
-
-    @cached_property
-    def times(self) -> Array:
-        """All computed times of the test, s."""
-        on = self.phases.idle + self.heating
-        return np.concatenate([on, self.phases.idle + self.phases.heating + self.cooling])
-
-    def matrix(self, times: ArrayLike) -> Array:
-        """Interpolation matrix (times, computed times): cubic splines in logarithmic time; start before heating."""
-        from scipy.interpolate import CubicSpline
-
-        t = np.asarray(times, dtype=float) - self.phases.idle
-        on = self.heating
-        matrix = np.zeros((t.size, on.size + self.cooling.size))
-        early, late = t <= 0, t > on[-1]
-        matrix[early, 0] = 1.0
-        spline = CubicSpline(np.log1p(on / SCALE), np.eye(on.size))
-        matrix[~early & ~late, : on.size] = spline(np.log1p(t[~early & ~late] / SCALE))
-        if self.cooling.size:
-            off = np.concatenate([[0.0], self.cooling])
-            spline = CubicSpline(np.log1p(off / SCALE), np.eye(off.size))
-            after = np.clip(t[late] - on[-1], 0.0, off[-1])
-            matrix[np.ix_(late, range(on.size - 1, matrix.shape[1]))] = spline(np.log1p(after / SCALE))
-        else:
-            matrix[late, -1] = 1.0
-        return matrix
-
-    def lagged(self, values: Array, lag: float) -> Array:
-        """Readings with first-order lag (n_times, ...), exact for values linear between computed times."""
-        if lag <= 0:
-            return values
-        out = np.array(values, dtype=float)
-        for i, dt in enumerate(np.diff(self.times), 1):
-            keep = np.exp(-dt / lag)
-            mean = (1.0 - keep) * lag / dt
-            out[i] = keep * out[i - 1] + (mean - keep) * values[i - 1] + (1.0 - mean) * values[i]
-        return out
-
-
-def find(name: str | Path) -> Path:
-    """The file of a rig, by path, by folder with a ``rig.toml``, or by name of a shipped rig.
-
-    >>> find("trtlab").name
-    'rig.toml'
-    """
-    path = Path(name)
-    for option in (path, path / "rig.toml"):
-        if option.is_file():
-            return option
-    known: dict[str, Path] = {}
-    for root in library.roots():
-        for file in sorted((root / library.FOLDERS["study"]).glob("*/rig.toml")):
-            known.setdefault(file.parent.name.removeprefix("rig-"), file)
-    if str(name).removeprefix("rig-") in known:
-        return known[str(name).removeprefix("rig-")]
-    raise InputError(f"no rig file and no rig named '{name}'{nearest(str(name), known)}")
-
-
-def load(name: str | Path) -> tuple[RigCard, Path]:
-    """Load a rig card; return the card and its file.
-
-    Raises InputError with file and field if the rig is not possible.
-
-    >>> card, file = load("trtlab")
-    >>> [layer.name for layer in card.layers]
-    ['tread', 'carcass']
-    """
-    file = find(name)
-    data = read_toml(file)
-    expect_kind("rig", data, file)
-    return RigCard.check(data, file), file
-
-
-def beside(card: RigCard, file: Path) -> list[Path]:
-    """Default files of the runs' tables, beside the card; they need not exist."""
-    return [file.parent / f"{run}.csv" for run in card.runs]
-
-
-def tables(card: RigCard, file: Path, given: Iterable[str | Path] = ()) -> list[Path]:
-    """Files of measured tables: ``given`` (in the working folder, else beside the card); default: every ``RUN.csv``.
-
-    Raises InputError if none is given and a run has no table beside the card.
-
-    >>> card, file = load("trtlab")
-    >>> [table.name for table in tables(card, file)]
-    ['low.csv', 'high.csv']
-    """
-    folder = file.parent
-    named = [Path(table) for table in given]
-    if named:
-        return [folder / path if not path.exists() and (folder / path).is_file() else path for path in named]
-    files = beside(card, file)
-    missing = [table.name for table in files if not table.is_file()]
-    if len(missing) == len(files):
-        raise InputError(f"no table is given and none of {', '.join(missing)} is beside the card", file=file)
-    if missing:
-        there = " ".join(table.name for table in files if table.is_file())
-        words = f"the card has runs without a table beside it: {', '.join(missing)}; to do without them, name {there}"
-        raise InputError(words, field="runs", file=file)
-    return files

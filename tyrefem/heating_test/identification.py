@@ -12,8 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
-from tyrefem.heating_test.card import RigCard, load
-from tyrefem.heating_test.card import tables as beside
+from tyrefem.heating_test.card import RigCard
+from tyrefem.heating_test.files import load
+from tyrefem.heating_test.files import tables as beside
 from tyrefem.heating_test.fit import Fitter, RigFit
 from tyrefem.heating_test.grid import USUAL, Fineness
 from tyrefem.heating_test.noise import Noise, estimated, missed, normal

@@ -33,7 +33,7 @@ def merged(card: RigCard, count: int) -> RigCard:
     Thicknesses are added; the prior conductivity is of layers in series; density and specific heat preserve mass and
     heat capacity. Raises InputError if the card has fewer layers.
 
-    >>> from tyrefem.heating_test.card import load
+    >>> from tyrefem.heating_test.files import load
     >>> layer = merged(load("trtlab")[0], 1).layers[0]
     >>> layer.name, round(layer.thickness, 4), round(layer.conductivity.value, 3)
     ('tread+carcass', 0.015, 0.271)

@@ -101,7 +101,7 @@ def clock_of(run: str) -> str:
 def parameters_of(card: RigCard, sensors: Sequence[str], runs: Sequence[str] | None = None) -> Parameters:
     """The parameters of a rig with the given sensors and runs (None: all); parameters without uncertainty are fixed.
 
-    >>> from tyrefem.heating_test.card import load
+    >>> from tyrefem.heating_test.files import load
     >>> parameters = parameters_of(load("trtlab")[0], ["outer", "inner", "interface"])
     >>> parameters.names[:4]
     ('tread.conductivity', 'tread.specific_heat', 'tread.conductivity_slope', 'tread.specific_heat_slope')

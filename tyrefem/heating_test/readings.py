@@ -13,7 +13,8 @@ from scipy.sparse import csr_matrix
 
 from tyrefem.brief import Brief
 from tyrefem.errors import InputError, nearest, quoted
-from tyrefem.heating_test.card import Clock, RigCard, RunCard, SensorCard
+from tyrefem.heating_test.card import RigCard, RunCard, SensorCard
+from tyrefem.heating_test.clock import Clock
 from tyrefem.heating_test.grid import PatchGrid
 from tyrefem.measured import MeasuredRun, read_table
 

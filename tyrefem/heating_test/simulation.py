@@ -13,7 +13,9 @@ from numpy.typing import NDArray
 from tyrefem.brief import Brief
 from tyrefem.errors import InputError
 from tyrefem.estimates.work import check_readings
-from tyrefem.heating_test.card import Clock, RigCard, load
+from tyrefem.heating_test.card import RigCard
+from tyrefem.heating_test.clock import Clock
+from tyrefem.heating_test.files import load
 from tyrefem.heating_test.grid import USUAL, Fineness
 from tyrefem.heating_test.parameters import clock_of, parameters_of
 from tyrefem.heating_test.twin import Twin

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.heating_test.card import Clock, RigCard, RunCard
+from tyrefem.heating_test.card import RigCard, RunCard
+from tyrefem.heating_test.clock import Clock
 from tyrefem.heating_test.grid import USUAL, Fineness, PatchGrid
 from tyrefem.heating_test.parameters import Parameters, RigParameter, at
 from tyrefem.heating_test.patch import Patch, PatchLayer, Property

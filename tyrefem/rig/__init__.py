@@ -7,7 +7,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from tyrefem.heating_test.card import RigCard, load
+from tyrefem.heating_test.card import RigCard
+from tyrefem.heating_test.files import load
 from tyrefem.heating_test.patch import Patch, PatchLayer, Property, air, natural_film, nusselt
 from tyrefem.heating_test.readings import read
 from tyrefem.heating_test.simulation import Simulation, simulate
