@@ -87,7 +87,7 @@ def press(
     from tyrefem.api import study as load_study
     from tyrefem.cli.critical_speed import print_critical_speeds
     from tyrefem.inputs.origin import StudyOrigin
-    from tyrefem.mechanics.footprint.press import NEEDS
+    from tyrefem.mechanics.footprint.press_order import NEEDS
     from tyrefem.mechanics.rolling.press import press as pressed_by
     from tyrefem.reports.press import FILES, write_files
     from tyrefem.reports.press_places import cycle_places, read_place

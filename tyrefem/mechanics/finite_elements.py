@@ -300,7 +300,7 @@ def _turning_provider(study: StudyData) -> Callable[..., FiniteElements]:
 
     A tyre at rest, and one without load, is that of `_standing_provider`.
     """
-    from tyrefem.mechanics.footprint.press import PressOrder
+    from tyrefem.mechanics.footprint.press_order import PressOrder
     from tyrefem.mechanics.footprint.pressed_tyre import TOLERANCE, mechanical_mesh
     from tyrefem.mechanics.footprint.road import Road
     from tyrefem.mechanics.rolling.turning import turn

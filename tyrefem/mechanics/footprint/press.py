@@ -5,23 +5,18 @@ from __future__ import annotations
 import functools
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
-from typing import TYPE_CHECKING, Any, Protocol, get_args
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
-from tyrefem.errors import InputError, nearest
-from tyrefem.estimates import work as estimate
-from tyrefem.geometry.meshing.expected import QUADRATIC
+from tyrefem.errors import InputError
 from tyrefem.inputs.motion import motion_in
-from tyrefem.inputs.study_card import FootprintMotion
 from tyrefem.inputs.study_plugins import plugin_summary
-from tyrefem.mechanics.footprint.footprint import QUICK_LOOK
-from tyrefem.mechanics.footprint.pressed_tyre import TOLERANCE, mechanical_mesh
-from tyrefem.mechanics.footprint.road import Road
-from tyrefem.mechanics.footprint.secant_moduli import SecantModuli, under_load
-from tyrefem.requirements import Requirements
+from tyrefem.mechanics.footprint.press_order import press_order
+from tyrefem.mechanics.footprint.pressed_tyre import TOLERANCE
+from tyrefem.mechanics.footprint.secant_moduli import SecantModuli
 from tyrefem.threads import one_thread
 
 if TYPE_CHECKING:
@@ -35,14 +30,9 @@ if TYPE_CHECKING:
     from tyrefem.mechanics.solid.inflation import Inflation
 
 Array = NDArray[np.float64]
-#: Requirements of a footprint on the study.
-NEEDS = Requirements("a footprint")
-MOTIONS = get_args(FootprintMotion)
 #: The load-deflection curve ends at this factor beyond the footprint, or just before the rim.
 BEYOND = 1.25
 BEFORE_RIM = 0.98
-#: Smallest drum over the tyre's diameter. Harmonics and linear contact do not resolve smaller drums, i.e. obstacles.
-SMALLEST_DRUM = 0.1
 
 
 @dataclass(frozen=True, eq=False)
@@ -317,81 +307,3 @@ def press(
     footprint = balance.solve(**order.wanted)
     path = (tuple(balance.path), order.moduli, tuple(balance.path_harmonics))
     return Pressed(order.study, order.mesh, tyre, pressing, footprint, order.tolerance, *path)
-
-
-@dataclass(frozen=True)
-class PressOrder:
-    """What is to be pressed. Made by `press_order`.
-
-    Parameters
-    ----------
-    study : with the secant moduli, if it asks for them. mesh : the mechanical mesh. pressure : Pa. road : the road.
-    load, deflection : N or m, one of them. tolerance : with the number of harmonics. large : large motion.
-    moduli : the secant moduli.
-    """
-
-    study: StudyData
-    mesh: TyreMesh
-    pressure: float
-    road: Road
-    load: float | None
-    deflection: float | None
-    tolerance: float
-    large: bool
-    moduli: SecantModuli | None = None
-
-    @property
-    def wanted(self) -> dict[str, Any]:
-        """What a solver of footprints takes."""
-        return {"load": self.load, "deflection": self.deflection, "tolerance": self.tolerance}
-
-
-def press_order(
-    study: StudyData,
-    *,
-    pressure: float | None = None,
-    load: float | None = None,
-    deflection: float | None = None,
-    drum_diameter: float | None = None,
-    camber: float = 0.0,
-    tolerance: float = TOLERANCE,
-    motion: str | None = None,
-) -> PressOrder:
-    """Checked options of `press`, with the defaults of the drive's first phase; raises the same errors."""
-    NEEDS.check(study)
-    motion = study.card.mechanics.motion if motion is None else motion
-    if motion not in MOTIONS:
-        raise InputError(f"no motion '{motion}'{nearest(motion, MOTIONS)}", field="motion")
-    large = motion == "large"
-    phase = study.card.drive.phases[0]
-    if load is not None and deflection is not None:
-        raise InputError("give a load or a deflection, not both", field="load")
-    if load is None and deflection is None:
-        load = None if phase.load is None else phase.load.start
-        deflection = None if phase.deflection is None else phase.deflection.start
-    pressure = phase.pressure.start if pressure is None else pressure
-    wanted = {"pressure": (pressure, "Pa"), "load": (load, "N"), "deflection": (deflection, "m")}
-    for name, (value, unit) in wanted.items():
-        if value is not None and not value > 0:
-            raise InputError(f"must be more than 0 {unit}, not {value:g} {unit}", field=name)
-    smallest = SMALLEST_DRUM * study.section.outer_diameter
-    drum = phase.drum_diameter if drum_diameter is None else drum_diameter
-    if 0 < drum < smallest:
-        raise InputError(
-            f"a drum of {drum * 1e3:.4g} mm is too small: at least a tenth of the tyre, {smallest * 1e3:.0f} mm",
-            field="drum_diameter",
-        )
-    road = Road(drum, camber)
-    if camber and study.section.half:
-        study = study.replace({"mesh.section": "full"})
-    mesh = mechanical_mesh(study, large=large)
-    nodes = QUADRATIC * mesh.n_nodes
-    estimate.warn_if_long(
-        estimate.mechanics(nodes, large=large).time,
-        f"the footprint of {nodes:,} nodes",
-        lambda: f"; {QUICK_LOOK}" if large else "",
-    )
-    moduli = None
-    if study.card.mechanics.moduli == "secant":
-        study, moduli = under_load(study, mesh, pressure, road, load=load, deflection=deflection)
-    return PressOrder(study, mesh, pressure, road, load, deflection, tolerance, large, moduli)

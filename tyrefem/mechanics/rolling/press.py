@@ -7,6 +7,7 @@ from typing import Any
 
 from tyrefem.inputs.study import StudyData
 from tyrefem.mechanics.footprint import press as presses
+from tyrefem.mechanics.footprint.press_order import press_order
 from tyrefem.mechanics.rolling.turning import turn
 
 
@@ -31,7 +32,7 @@ def press(study: StudyData, *, speed: float | None = None, **options: Any) -> pr
     given, speed = speed, presses.speed_of(study) if speed is None else speed
     if not speed:
         return replace(presses.press(study, **options), given_speed=given)
-    order = presses.press_order(study, **options)
+    order = press_order(study, **options)
     turning = turn(order, speed)
     parts = (turning.tyre, turning.pressing, turning.footprint, order.tolerance, turning.path)
     return presses.Pressed(order.study, order.mesh, *parts, order.moduli, turning.path_harmonics, turning, given)

@@ -24,7 +24,7 @@ from tyrefem.mechanics.rolling.lossy_harmonics import LossyHarmonics
 
 if TYPE_CHECKING:
     from tyrefem.inputs.study import StudyData
-    from tyrefem.mechanics.footprint.press import PressOrder
+    from tyrefem.mechanics.footprint.press_order import PressOrder
     from tyrefem.mechanics.solid.inflation import Inflation
 
 Array = NDArray[np.float64]
