@@ -10,7 +10,7 @@ import pytest
 import tyrefem as tf
 from tyrefem.inputs.drive import Phase
 from tyrefem.inputs.wheel_state import wheel_state
-from tyrefem.mechanics.cycle_schedule import changes_cycle
+from tyrefem.mechanics.solved_cases import changes_cycle
 
 pytestmark = pytest.mark.fast
 

@@ -6,12 +6,12 @@ import pytest
 
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData, study
-from tyrefem.mechanics.cycle_schedule import KnotSolver
 from tyrefem.mechanics.footprint.press import press
 from tyrefem.mechanics.footprint.pressed_tyre import inputs
 from tyrefem.mechanics.footprint.secant_moduli import PASSES, secant_moduli
 from tyrefem.mechanics.footprint.strain_amplitude import StrainAmplitude
 from tyrefem.mechanics.footprint.strain_harmonics import StrainHarmonics
+from tyrefem.mechanics.solved_cases import KnotSolver
 
 SWEEP = {
     "small_strain_modulus": "2.0 MPa",

@@ -13,13 +13,13 @@ from tyrefem.inputs.study import study
 from tyrefem.materials.card import material
 from tyrefem.materials.loss_tangent import OfTemperature, PowerLaw
 from tyrefem.materials.strain_dependence import StrainDependence
-from tyrefem.mechanics.cycle_schedule import KnotSolver
 from tyrefem.mechanics.footprint.contact import Pressing
 from tyrefem.mechanics.footprint.example_tyre import PlainTyre
 from tyrefem.mechanics.footprint.loss import RevolutionLoss
 from tyrefem.mechanics.footprint.press import press
 from tyrefem.mechanics.footprint.strain_amplitude import StrainAmplitude, shear_amplitude
 from tyrefem.mechanics.footprint.strain_harmonics import StrainHarmonics
+from tyrefem.mechanics.solved_cases import KnotSolver
 from tyrefem.mechanics.strain_cycle import LOSS_FACTOR
 
 REGIONS = ("ply", "belt", "tread", "sidewall")

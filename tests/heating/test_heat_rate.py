@@ -11,7 +11,7 @@ import pytest
 
 import tyrefem as tf
 from tyrefem.inputs.loading import TrR64
-from tyrefem.mechanics.cycle_schedule import ramp_knots
+from tyrefem.mechanics.solved_cases import ramp_knots
 from tyrefem.simulation.rolling_tyre import RollingTyre
 
 pytestmark = pytest.mark.fast

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 from bias_tyre import bias
 
-from tyrefem.mechanics.cycle_schedule import KnotSolver
 from tyrefem.mechanics.finite_elements import FiniteElements
+from tyrefem.mechanics.solved_cases import KnotSolver
 
 
 @pytest.fixture(scope="session")

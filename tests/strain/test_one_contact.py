@@ -11,9 +11,10 @@ import pytest
 
 import tyrefem as tf
 from tyrefem.boundaries.road_film import propagation_depth, triangular_film
-from tyrefem.mechanics.cycle_schedule import cycle_schedule, rated_case
+from tyrefem.mechanics.cycle_schedule import cycle_schedule
 from tyrefem.mechanics.footprint import pressed_tyre
 from tyrefem.mechanics.footprint.press import Pressed, press
+from tyrefem.mechanics.solved_cases import rated_case
 from tyrefem.reports.inputs import mechanics_rows
 from tyrefem.reports.run import headline
 from tyrefem.reports.run_files import loaded_cycle

@@ -7,7 +7,7 @@ from tyrefem.compare.uncertain_drives import check_uncertain_drives
 from tyrefem.errors import InputError, nearest
 from tyrefem.inputs.study import StudyData
 from tyrefem.inputs.uncertain_numbers import uncertain_at
-from tyrefem.mechanics.cycle_schedule import check_cases
+from tyrefem.mechanics.solved_cases import check_cases
 
 
 def check_study(study: StudyData) -> int:

@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
-from tyrefem.mechanics.cycle_schedule import KnotSolver, changes_cycle, ramp_knots, same_cycles
+from tyrefem.mechanics.cycle_schedule import same_cycles
+from tyrefem.mechanics.solved_cases import KnotSolver, changes_cycle, ramp_knots
 from tyrefem.realtime.inputs import Box
 from tyrefem.realtime.tables import Probe
 from tyrefem.reduced.packed_model import base_of

@@ -21,7 +21,8 @@ from tyrefem.errors import InputError
 from tyrefem.inputs.changes import value_at
 from tyrefem.inputs.loading import PressedContact
 from tyrefem.inputs.study import StudyData
-from tyrefem.mechanics.cycle_schedule import CycleSchedule, KnotSolver, same_cycles
+from tyrefem.mechanics.cycle_schedule import CycleSchedule, same_cycles
+from tyrefem.mechanics.solved_cases import KnotSolver
 from tyrefem.mechanics.strain_cycle import Zone
 from tyrefem.mechanics.strain_laws import strain_law
 from tyrefem.simulation.rolling_tyre import RollingTyre

@@ -14,9 +14,9 @@ from tyrefem.estimates.work import Estimate
 from tyrefem.geometry.meshing.expected import QUADRATIC, expected_nodes
 from tyrefem.inputs.motion import motion_in
 from tyrefem.inputs.wheel_state import wheel_state
-from tyrefem.mechanics.cycle_schedule import changes_cycle, ramp_knots
 from tyrefem.mechanics.footprint.footprint import QUICK_LOOK
 from tyrefem.mechanics.footprint.pressed_tyre import element_size
+from tyrefem.mechanics.solved_cases import changes_cycle, ramp_knots
 from tyrefem.mechanics.strain_laws import strain_law
 
 if TYPE_CHECKING:

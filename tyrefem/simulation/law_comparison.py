@@ -265,7 +265,7 @@ def _outcome(study: StudyData, law: str) -> LawOutcome:
 
 
 def _has_arcs(study: StudyData) -> bool:
-    from tyrefem.mechanics.cycle_schedule import ARC_REGIONS
+    from tyrefem.mechanics.arc_stiffness import ARC_REGIONS
 
     section = study.section
     return hasattr(section.line, "sidewall_radius") and set(ARC_REGIONS) <= set(section.regions)

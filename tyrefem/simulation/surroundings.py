@@ -19,7 +19,8 @@ from tyrefem.errors import InputError
 from tyrefem.inputs.drive import Drive
 from tyrefem.inputs.motion import WheelMotion
 from tyrefem.inputs.study import StudyData
-from tyrefem.mechanics.cycle_schedule import CycleSchedule, cycle_schedule, rated_case
+from tyrefem.mechanics.cycle_schedule import CycleSchedule, cycle_schedule
+from tyrefem.mechanics.solved_cases import rated_case
 from tyrefem.quantity import Ramp
 from tyrefem.simulation.effect_states import EffectStates
 

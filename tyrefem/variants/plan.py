@@ -14,7 +14,7 @@ from tyrefem.errors import InputError, InputWarning
 from tyrefem.inputs.study import StudyData
 from tyrefem.inputs.uncertain_numbers import left_out
 from tyrefem.mechanics.cautions import warnings_of
-from tyrefem.mechanics.cycle_schedule import check_cases
+from tyrefem.mechanics.solved_cases import check_cases
 from tyrefem.quantity import written
 from tyrefem.variants.answers import check_answer, check_sensor_names
 from tyrefem.variants.card import LimitCard, SweepCard, VaryCard

@@ -8,8 +8,8 @@ from typing import ClassVar
 from tyrefem.errors import InputError
 from tyrefem.inputs.loading import LoadCase
 from tyrefem.inputs.study import StudyData
+from tyrefem.mechanics.arc_stiffness import arc_stiffness
 from tyrefem.mechanics.arcs import Arcs
-from tyrefem.mechanics.cycle_schedule import stiffness
 from tyrefem.mechanics.strain_laws import StrainLaw
 
 
@@ -21,7 +21,7 @@ class TwoArcStrains(StrainLaw):
 
     def provider(self, study: StudyData) -> Callable[[LoadCase], Arcs]:
         """Raises `InputError` for a card without a modulus; its result, for a load that the arcs cannot take."""
-        moduli = stiffness(study)
+        moduli = arc_stiffness(study)
 
         def cycle(case: LoadCase) -> Arcs:
             arcs = Arcs(study.section, moduli, case)
