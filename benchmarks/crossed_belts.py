@@ -35,9 +35,9 @@ from tyrefem.mechanics.footprint.compliance import TreadCompliance
 from tyrefem.mechanics.footprint.elements import COMPONENTS, SectionElements
 from tyrefem.mechanics.footprint.harmonics import SYMMETRIC, Harmonics
 from tyrefem.mechanics.rolling.pressed_shape import PressedShape
-from tyrefem.mechanics.rolling.roll import WheelOnRoad, wheel_on_road
 from tyrefem.mechanics.rolling.slip_curve import slip_stiffness
 from tyrefem.mechanics.rolling.tread_influence import TreadInfluence
+from tyrefem.mechanics.rolling.wheel_on_road import WheelOnRoad, wheel_on_road
 from tyrefem.mechanics.solid.body import Body, Prestressed
 from tyrefem.mechanics.solid.body_law import BodyLaw
 from tyrefem.mechanics.solid.compounds import determinant, neo_hookean

@@ -35,12 +35,13 @@ from tyrefem.mechanics.rolling.example_bodies import CYLINDER_RADIUS, bristles, 
 from tyrefem.mechanics.rolling.free_rolling import LossyTyre, rolling_resistance
 from tyrefem.mechanics.rolling.friction import RollingContact
 from tyrefem.mechanics.rolling.lossy_harmonics import LossyHarmonics
-from tyrefem.mechanics.rolling.roll import settled, wheel_on_road
+from tyrefem.mechanics.rolling.roll import settled
 from tyrefem.mechanics.rolling.rolling_motion import RollingMotion
 from tyrefem.mechanics.rolling.slip_curve import slip_stiffness
 from tyrefem.mechanics.rolling.standing import DIRECTIONS, StandingTyre
 from tyrefem.mechanics.rolling.steady_rolling import RollingLoads, SteadyRolling
 from tyrefem.mechanics.rolling.tread_influence import TreadInfluence
+from tyrefem.mechanics.rolling.wheel_on_road import wheel_on_road
 
 ROOT = Path(__file__).resolve().parents[1]
 TABLES = ROOT / "docs" / "evidence" / "tables"

@@ -29,8 +29,8 @@ import numpy as np
 from measured import UNCERTAIN, rows_of, scaled, text_of
 
 import tyrefem as tf
-from tyrefem.mechanics.rolling.roll import wheel_on_road
 from tyrefem.mechanics.rolling.slip_curve import slip_stiffness
+from tyrefem.mechanics.rolling.wheel_on_road import wheel_on_road
 from tyrefem.output import atomic_path
 
 ROOT = Path(__file__).resolve().parents[1]

@@ -27,8 +27,8 @@ import numpy as np
 import tyrefem as tf
 from tyrefem.mechanics.footprint.example_tyre import PlainTyre
 from tyrefem.mechanics.footprint.reference_3d import Hexahedra, angles_near_contact
-from tyrefem.mechanics.rolling.roll import WheelOnRoad, wheel_on_road
 from tyrefem.mechanics.rolling.rolling_motion import RollingMotion
+from tyrefem.mechanics.rolling.wheel_on_road import WheelOnRoad, wheel_on_road
 
 STUDY, LOAD, HARMONICS, POINTS = "passenger-205-55r16", 4000.0, 40, 20
 #: Mesh of the study with 5,000 nodes of the mechanics, and a coarser one for large motion.

@@ -17,6 +17,7 @@ from tyrefem.mechanics.footprint import press as footprint_press
 from tyrefem.mechanics.footprint.natural_frequencies import natural_frequencies
 from tyrefem.mechanics.rolling import force_table, roll, slip_curve
 from tyrefem.mechanics.rolling import press as rolling_press
+from tyrefem.mechanics.rolling.wheel_on_road import wheel_on_road
 from tyrefem.plan import workflow
 from tyrefem.sweep.question import sweep_questions
 from tyrefem.variants.card import SweepCard
@@ -40,7 +41,7 @@ def verb(name: str) -> dict[str, Any]:
 #: Long lists: None stands for the function's.
 LEFT_TO_THE_FUNCTION = {("tyre_forces", name) for name in ("slip_angles", "slips", "cambers")}
 #: Of `wheel_on_road` and `press`, what rolling hands on.
-WHEEL = {**named(roll.wheel_on_road), "pressure": None, "drum_diameter": None}
+WHEEL = {**named(wheel_on_road), "pressure": None, "drum_diameter": None}
 OPTIONS: dict[str, Iterable[str]] = {
     "compare": {"table", "result", *ComparisonOptions.__annotations__},
     "diagnose": {"table", *DiagnosisOptions.__annotations__},
@@ -66,7 +67,7 @@ def test_a_verb_names_every_option(name: str) -> None:
     [
         ("press", footprint_press.press),
         ("roll", roll.roll),
-        ("roll", roll.wheel_on_road),
+        ("roll", wheel_on_road),
         ("slip_curve", slip_curve.slip_curve),
         ("tyre_forces", force_table.tyre_forces),
         ("natural_frequencies", natural_frequencies),

@@ -21,12 +21,12 @@ from tyrefem.mechanics.rolling.friction import OPEN
 from tyrefem.mechanics.rolling.loaded_tyre import TyreOnFootprint
 from tyrefem.mechanics.rolling.lossy_harmonics import LossyHarmonics
 from tyrefem.mechanics.rolling.pushed_contact import push_forces, pushed_body
-from tyrefem.mechanics.rolling.roll import wheel_on_road
 from tyrefem.mechanics.rolling.rolling_motion import RollingMotion
 from tyrefem.mechanics.rolling.standing import StandingTyre, as_it_rolls, standing_stiffness
 from tyrefem.mechanics.rolling.steady_rolling import RollingLoads, SteadyRolling
 from tyrefem.mechanics.rolling.stiffened_footprint import StiffenedOnFootprint
 from tyrefem.mechanics.rolling.tread_influence import PHASE, TreadInfluence
+from tyrefem.mechanics.rolling.wheel_on_road import wheel_on_road
 from tyrefem.mechanics.solid.stiffened import stiffened
 
 HARMONICS = 20

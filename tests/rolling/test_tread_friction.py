@@ -9,8 +9,8 @@ from tyrefem import study
 from tyrefem.api import Study
 from tyrefem.mechanics.footprint.press import press
 from tyrefem.mechanics.rolling.friction import SLIP
-from tyrefem.mechanics.rolling.roll import FRICTION, tread_friction, wheel_on_road
 from tyrefem.mechanics.rolling.rolling_motion import RollingMotion
+from tyrefem.mechanics.rolling.wheel_on_road import FRICTION, tread_friction, wheel_on_road
 
 COARSE = {"mesh.size": "16 mm", "mechanics.motion": "linear"}
 

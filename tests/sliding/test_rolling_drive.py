@@ -13,11 +13,12 @@ import tyrefem as tf
 from tyrefem.errors import InputError
 from tyrefem.mechanics.footprint.strain_harmonics import StrainHarmonics
 from tyrefem.mechanics.nearby_cycles import NearbyCycles, SolvedCycles
-from tyrefem.mechanics.rolling.roll import RolledStudy, WheelOnRoad
+from tyrefem.mechanics.rolling.roll import RolledStudy
 from tyrefem.mechanics.rolling.rolled_footprint import RolledFootprint
 from tyrefem.mechanics.rolling.rolling_motion import RollingMotion
 from tyrefem.mechanics.rolling.steady_rolling import RollingLoads, SteadyRolling
 from tyrefem.mechanics.rolling.turning import cycle_of
+from tyrefem.mechanics.rolling.wheel_on_road import WheelOnRoad
 from tyrefem.reports.figures.heat_source import heat_source_figure, unevenness, zone_heat
 from tyrefem.reports.run import slip_columns
 

@@ -75,7 +75,7 @@ def forces(
     from tyrefem.api import study as load_study
     from tyrefem.inputs.origin import StudyOrigin
     from tyrefem.mechanics.rolling.force_table import tyre_forces
-    from tyrefem.mechanics.rolling.roll import NEEDS
+    from tyrefem.mechanics.rolling.wheel_on_road import NEEDS
     from tyrefem.reports.forces import FILES, summary, warnings, write_files
 
     lists = {"loads": loads, "slip_angles": slip_angles, "slips": slips, "cambers": cambers}

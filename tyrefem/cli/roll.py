@@ -24,8 +24,9 @@ from tyrefem.errors import InputError
 from tyrefem.output.folder import results_folder
 
 if TYPE_CHECKING:
-    from tyrefem.mechanics.rolling.roll import RolledStudy, WheelOnRoad
+    from tyrefem.mechanics.rolling.roll import RolledStudy
     from tyrefem.mechanics.rolling.slip_curve import SlipCurve
+    from tyrefem.mechanics.rolling.wheel_on_road import WheelOnRoad
 
 #: Options with one quantity: name and unit.
 OPTIONS = {
@@ -87,9 +88,9 @@ def roll(
     """Roll the tyre with friction: forces, moments, slip and friction power; several slips give a curve."""
     from tyrefem.api import study as load_study
     from tyrefem.inputs.origin import StudyOrigin
-    from tyrefem.mechanics.rolling.roll import NEEDS
     from tyrefem.mechanics.rolling.roll import roll as rolled_by
     from tyrefem.mechanics.rolling.slip_curve import slip_curve
+    from tyrefem.mechanics.rolling.wheel_on_road import NEEDS
     from tyrefem.reports.roll import FILES, summary, write_curve, write_files
 
     texts = {

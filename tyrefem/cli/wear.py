@@ -64,7 +64,8 @@ def wear(
     """
     from tyrefem.api import study as load
     from tyrefem.inputs.origin import StudyOrigin
-    from tyrefem.mechanics.rolling.roll import NEEDS, roll
+    from tyrefem.mechanics.rolling.roll import roll
+    from tyrefem.mechanics.rolling.wheel_on_road import NEEDS
     from tyrefem.reports.wear import FILES, words, write_files
     from tyrefem.wear.drive_wear import drive_wear
     from tyrefem.wear.ring_wear import RingWear, ring_wear, tread_table

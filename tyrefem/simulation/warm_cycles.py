@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from tyrefem.mechanics.cycle_schedule import CycleSchedule
 from tyrefem.mechanics.footprint.pressed_tyre import mechanical_mesh
-from tyrefem.mechanics.rolling.roll import road_region
+from tyrefem.mechanics.rolling.wheel_on_road import road_region
 from tyrefem.mechanics.solved_cases import KnotSolver, changes_cycle, ramp_knots, warming_knots
 from tyrefem.mechanics.strain_cycle import solved_case
 from tyrefem.quantity import KELVIN

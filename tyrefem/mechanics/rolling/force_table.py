@@ -14,9 +14,10 @@ from numpy.typing import NDArray
 from tyrefem.brief import Brief
 from tyrefem.errors import InputError
 from tyrefem.materials.cord_layers import masses
-from tyrefem.mechanics.rolling.roll import HARMONICS, WheelOnRoad, driven, row, swept, wheel_on_road
+from tyrefem.mechanics.rolling.roll import HARMONICS, driven, row, swept
 from tyrefem.mechanics.rolling.rolled import RolledTyre
 from tyrefem.mechanics.rolling.rolling_motion import RollingMotion
+from tyrefem.mechanics.rolling.wheel_on_road import WheelOnRoad, wheel_on_road
 from tyrefem.threads import one_thread
 from tyrefem.tyre_forces.fitting import MagicFormulaFit, fit_magic_formula
 from tyrefem.tyre_forces.points import ForcePoints

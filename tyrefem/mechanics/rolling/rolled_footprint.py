@@ -19,17 +19,10 @@ from tyrefem.mechanics.footprint.strain_harmonics import StrainHarmonics
 from tyrefem.mechanics.rolling.contact_patch import ContactPatch
 from tyrefem.mechanics.rolling.friction_rings import FrictionRings
 from tyrefem.mechanics.rolling.lagging_strains import LaggingFootprint, LaggingStrains, strain_amplitudes
-from tyrefem.mechanics.rolling.roll import (
-    TOLERANCE,
-    RolledStudy,
-    WheelOnRoad,
-    friction_card,
-    settled,
-    tread_friction,
-    wheel_on_road,
-)
+from tyrefem.mechanics.rolling.roll import TOLERANCE, RolledStudy, settled
 from tyrefem.mechanics.rolling.rolling_motion import RollingMotion
 from tyrefem.mechanics.rolling.section_fields import SectionFields
+from tyrefem.mechanics.rolling.wheel_on_road import WheelOnRoad, friction_card, tread_friction, wheel_on_road
 
 if TYPE_CHECKING:
     from tyrefem.inputs.loading import LoadCase

@@ -14,21 +14,11 @@ from tyrefem.brief import Brief
 from tyrefem.errors import InputError
 from tyrefem.inputs.study_plugins import plugin_summary
 from tyrefem.mechanics.footprint.natural_frequencies import AMPLITUDE
-from tyrefem.mechanics.rolling.roll import (
-    SMALL_ANGLE,
-    SMALL_SLIP,
-    TOLERANCE,
-    RolledStudy,
-    WheelOnRoad,
-    driven,
-    row,
-    settled,
-    swept,
-    wheel_on_road,
-)
+from tyrefem.mechanics.rolling.roll import SMALL_ANGLE, SMALL_SLIP, TOLERANCE, RolledStudy, driven, row, settled, swept
 from tyrefem.mechanics.rolling.rolled import RolledTyre
 from tyrefem.mechanics.rolling.rolling_motion import RollingMotion
 from tyrefem.mechanics.rolling.standing import StandingStiffness, StandingTyre, as_it_rolls
+from tyrefem.mechanics.rolling.wheel_on_road import WheelOnRoad, wheel_on_road
 from tyrefem.threads import one_thread
 
 if TYPE_CHECKING:
