@@ -20,7 +20,7 @@ from tyrefem.mechanics.rolling.steady_rolling import RollingLoads, SteadyRolling
 from tyrefem.mechanics.rolling.turning import cycle_of
 from tyrefem.mechanics.rolling.wheel_on_road import WheelOnRoad
 from tyrefem.reports.figures.heat_source import heat_source_figure, unevenness, zone_heat
-from tyrefem.reports.run import slip_columns
+from tyrefem.reports.run_tables import slip_columns
 
 BASE = {
     "mesh.size": "16 mm", "mechanics.strain": "fem", "mechanics.motion": "linear", "drive.load": "6 kN",

@@ -16,8 +16,8 @@ from tyrefem.mechanics.footprint import pressed_tyre
 from tyrefem.mechanics.footprint.press import Pressed, press
 from tyrefem.mechanics.solved_cases import rated_case
 from tyrefem.reports.inputs import mechanics_rows
-from tyrefem.reports.run import headline
 from tyrefem.reports.run_files import loaded_cycle
+from tyrefem.reports.run_headline import headline
 from tyrefem.simulation.rolling_tyre import RollingTyre
 from tyrefem.variants.answers import answers
 
