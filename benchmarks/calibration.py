@@ -19,7 +19,7 @@ import tyrefem as tf
 from tyrefem.diagnose.blind.fitted_cases import fitted_cases, fitted_tag
 from tyrefem.diagnose.blind.kept_cases import kept_cases
 from tyrefem.diagnose.layout.calibration import calibrated
-from tyrefem.diagnose.layout.isolability import planned_sensitivities
+from tyrefem.diagnose.layout.planned_runs import planned_sensitivities
 from tyrefem.output import atomic_path
 from tyrefem.reports.calibration import save
 

@@ -25,7 +25,7 @@ import tyrefem as tf
 from tyrefem.diagnose import diagnose
 from tyrefem.diagnose.blind.blind_case import BlindCase, cases
 from tyrefem.diagnose.blind.synthetic import Logger, record
-from tyrefem.diagnose.layout.isolability import planned
+from tyrefem.diagnose.layout.planned_runs import planned
 from tyrefem.diagnose.unknowns.candidates import catalogue_candidates
 from tyrefem.diagnose.unknowns.unknown import with_values
 from tyrefem.diagnose.words.sentences import verdict_words

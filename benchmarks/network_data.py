@@ -28,7 +28,7 @@ from scipy.integrate import solve_ivp
 import tyrefem as tf
 from tyrefem.diagnose import diagnose
 from tyrefem.diagnose.forward.sampling import DriveSampling
-from tyrefem.diagnose.layout.isolability import planned
+from tyrefem.diagnose.layout.planned_runs import planned
 from tyrefem.diagnose.numbers import percent
 from tyrefem.diagnose.words.discrepancy_record import possible_effects
 from tyrefem.measured import MeasuredRun

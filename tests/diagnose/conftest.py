@@ -13,7 +13,7 @@ from tyrefem.diagnose.data.sensitivities import Sensitivities
 from tyrefem.diagnose.forward import evaluations
 from tyrefem.diagnose.forward.evaluations import Evaluations, ProgressStore
 from tyrefem.diagnose.forward.forward_model import ForwardModel
-from tyrefem.diagnose.layout.isolability import layout_sensitivities, planned
+from tyrefem.diagnose.layout.planned_runs import layout_sensitivities, planned
 
 
 @pytest.fixture(scope="session")

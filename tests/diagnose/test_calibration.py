@@ -23,8 +23,8 @@ from tyrefem.diagnose.layout.conformal import (
     read_calibration,
 )
 from tyrefem.diagnose.layout.false_alarms import Frequency, false_alarms
-from tyrefem.diagnose.layout.isolability import planned_sensitivities
 from tyrefem.diagnose.layout.linear_layout import LinearLayout, linear_layout
+from tyrefem.diagnose.layout.planned_runs import planned_sensitivities
 from tyrefem.diagnose.layout.quick_cases import DrawnCause, drawn, posterior_ranks, readings
 from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
 from tyrefem.diagnose.unknowns.candidates import Candidate, Members, SetPrior

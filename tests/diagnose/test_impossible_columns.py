@@ -8,7 +8,7 @@ import tyrefem as tf
 from tyrefem.diagnose.data.sensitivities import responses, unknowns_of
 from tyrefem.diagnose.forward.evaluations import Evaluations
 from tyrefem.diagnose.forward.forward_model import FOLLOWED, ForwardModel
-from tyrefem.diagnose.layout.isolability import planned
+from tyrefem.diagnose.layout.planned_runs import planned
 from tyrefem.diagnose.settings import DiagnosisSettings
 from tyrefem.diagnose.unknowns.candidates import catalogue_candidates
 

@@ -22,16 +22,8 @@ from tyrefem.diagnose.forward.forward_model import ForwardModel
 from tyrefem.diagnose.forward.sampling import DriveSampling, SensorSampling
 from tyrefem.diagnose.inference.linear_model import DesignMatrix, LinearModel
 from tyrefem.diagnose.inference.set_evidences import SetEvidences
-from tyrefem.diagnose.layout.isolability import (
-    MARGIN,
-    Isolability,
-    competitors_of,
-    fewest_runs,
-    isolability,
-    layout_sensitivities,
-    margins,
-    planned,
-)
+from tyrefem.diagnose.layout.isolability import MARGIN, Isolability, competitors_of, fewest_runs, isolability, margins
+from tyrefem.diagnose.layout.planned_runs import layout_sensitivities, planned
 from tyrefem.diagnose.unknowns.candidates import Candidate, SetPrior
 from tyrefem.diagnose.unknowns.energy_shapes import SHAPE
 from tyrefem.diagnose.unknowns.unknown import Unknown, of_effect

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 import tyrefem as tf
 from tyrefem.diagnose.forward import source_responses as responses
 from tyrefem.diagnose.forward.forward_model import ForwardModel
-from tyrefem.diagnose.layout.isolability import planned
+from tyrefem.diagnose.layout.planned_runs import planned
 from tyrefem.diagnose.settings import DiagnosisSettings
 from tyrefem.diagnose.unknowns.heat_patches import patches
 from tyrefem.diagnose.unknowns.unknown import Unknown

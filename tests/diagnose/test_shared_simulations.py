@@ -10,7 +10,7 @@ from tyrefem.api import Study
 from tyrefem.diagnose.data.sensitivities import shared_responses, unknowns_of
 from tyrefem.diagnose.forward.evaluations import Evaluations
 from tyrefem.diagnose.forward.forward_model import ForwardModel
-from tyrefem.diagnose.layout.isolability import planned
+from tyrefem.diagnose.layout.planned_runs import planned
 from tyrefem.diagnose.settings import DiagnosisSettings
 from tyrefem.simulation.sensors import lagged, recorded, recorded_change
 

@@ -12,7 +12,7 @@ import tyrefem
 from tyrefem.cli import main
 from tyrefem.diagnose.forward.effort import CASE, check_effort
 from tyrefem.diagnose.forward.forward_model import ForwardModel
-from tyrefem.diagnose.layout.isolability import planned
+from tyrefem.diagnose.layout.planned_runs import planned
 from tyrefem.errors import InputError
 from tyrefem.estimates.work import LongWorkWarning, warn_if_long
 from tyrefem.mechanics.footprint.press import press

@@ -13,7 +13,8 @@ from odd_studies import END, FITTED, HELD_OUT, SENSORS, table, write
 
 import tyrefem as tf
 from tyrefem.diagnose.forward.forward_model import ForwardModel
-from tyrefem.diagnose.layout.isolability import isolability, planned
+from tyrefem.diagnose.layout.isolability import isolability
+from tyrefem.diagnose.layout.planned_runs import planned
 from tyrefem.diagnose.next_experiment import drive_gain
 from tyrefem.diagnose.settings import DiagnosisSettings
 from tyrefem.diagnose.unknowns.candidates import catalogue_candidates

@@ -55,8 +55,8 @@ def isolability(
     from tyrefem.diagnose.blind.kept_cases import CASES
     from tyrefem.diagnose.forward.evaluations import ProgressStore
     from tyrefem.diagnose.layout.calibration import calibrated
-    from tyrefem.diagnose.layout.isolability import NEEDS, planned_sensitivities
     from tyrefem.diagnose.layout.isolability import isolability as found_by
+    from tyrefem.diagnose.layout.planned_runs import NEEDS, planned_sensitivities
     from tyrefem.inputs.origin import StudyOrigin
     from tyrefem.output import SUMMARY, atomic_folder, jsonable, write_json
     from tyrefem.reports.calibration import save

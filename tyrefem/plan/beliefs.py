@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from tyrefem.brief import Brief
 from tyrefem.compare.sensors import OUTSIDE_THE_RUBBER
 from tyrefem.diagnose.forward.strain_law_study import by_law
-from tyrefem.diagnose.layout.isolability import candidates_of
+from tyrefem.diagnose.layout.planned_runs import candidates_of
 from tyrefem.diagnose.settings import DiagnosisSettings
 from tyrefem.diagnose.unknowns.candidates import Members, SetPrior, possible
 from tyrefem.diagnose.unknowns.unknown import Unknown, base_unknowns, sensor_unknowns

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
 from tyrefem.cards.entries import entry_number
-from tyrefem.diagnose.layout.isolability import READING_INTERVAL
+from tyrefem.diagnose.layout.planned_runs import READING_INTERVAL
 from tyrefem.errors import InputError, nearest
 from tyrefem.inputs.changes import scaled
 from tyrefem.inputs.plan_choice import Limits, limit_unit

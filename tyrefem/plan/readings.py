@@ -17,7 +17,7 @@ from tyrefem.diagnose.forward.forward_model import ForwardModel
 from tyrefem.diagnose.forward.multifidelity import Predictions
 from tyrefem.diagnose.forward.sampling import DriveSampling, SensorSampling
 from tyrefem.diagnose.forward.worker_queues import number_of
-from tyrefem.diagnose.layout.isolability import READING_INTERVAL
+from tyrefem.diagnose.layout.planned_runs import READING_INTERVAL
 from tyrefem.diagnose.options import SimulationWork
 from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
 from tyrefem.diagnose.unknowns.unknown import Unknown, sensor_unknowns

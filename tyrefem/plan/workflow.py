@@ -12,7 +12,7 @@ from typing import Any, TypeGuard
 from tyrefem.diagnose.diagnosis import DiagnosisData
 from tyrefem.diagnose.forward.drive_response import DriveResponse
 from tyrefem.diagnose.forward.evaluations import ProgressStore
-from tyrefem.diagnose.layout.isolability import layout_notes
+from tyrefem.diagnose.layout.planned_runs import layout_notes
 from tyrefem.diagnose.options import SimulationWork
 from tyrefem.diagnose.settings import DiagnosisSettings
 from tyrefem.diagnose.unknowns.candidates import Members

@@ -19,7 +19,8 @@ from tyrefem.diagnose.forward.drive_response import DriveResponse
 from tyrefem.diagnose.forward.evaluations import Evaluations, evaluating
 from tyrefem.diagnose.forward.forward_model import ForwardModel
 from tyrefem.diagnose.inference.linear_model import LinearModel
-from tyrefem.diagnose.layout.isolability import MARGIN, competitors_of, layout_sensitivities, margins, planned
+from tyrefem.diagnose.layout.isolability import MARGIN, competitors_of, margins
+from tyrefem.diagnose.layout.planned_runs import layout_sensitivities, planned
 from tyrefem.diagnose.unknowns.candidates import Candidate, Members, SetPrior, catalogue_candidates
 from tyrefem.diagnose.unknowns.unknown import Unknown, base_unknowns, sensor_unknowns, with_values
 from tyrefem.diagnose.verdicts.verdict import IDENTIFIED, PARTLY

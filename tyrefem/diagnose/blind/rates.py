@@ -39,7 +39,7 @@ from tyrefem.diagnose.forward.drive_response import DriveResponse
 from tyrefem.diagnose.forward.effort import CASE, SENSITIVITIES, STRUCTURAL_CASE, check_effort
 from tyrefem.diagnose.forward.evaluations import ProgressStore, evaluating
 from tyrefem.diagnose.forward.forward_model import ForwardModel
-from tyrefem.diagnose.layout.isolability import candidates_of, layout_notes, planned
+from tyrefem.diagnose.layout.planned_runs import candidates_of, layout_notes, planned
 from tyrefem.errors import InputError, nearest
 from tyrefem.inputs.study import StudyData
 from tyrefem.inputs.study_plugins import plugin_summary
