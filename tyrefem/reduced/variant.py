@@ -30,7 +30,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Variant:
-    """A `tyrefem.variants.answers.FinishedRun` whose numbers come from POD modes.
+    """A `tyrefem.variants.finished_run.FinishedRun` whose numbers come from POD modes.
 
     Other attributes of a `Result` are computed at their first use.
 
