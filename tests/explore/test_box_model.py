@@ -13,7 +13,7 @@ import tyrefem
 from tyrefem.api import Exploration, Study
 from tyrefem.errors import InputError
 from tyrefem.realtime.box_certificate import differences, is_temperature
-from tyrefem.realtime.box_model import limited_answers
+from tyrefem.realtime.box_checks import limited_answers
 from tyrefem.realtime.box_runs import FullHistory, SettingTask, perform_history
 from tyrefem.realtime.default_box import default_box
 from tyrefem.realtime.drive_inputs import drive_inputs, inputs_of

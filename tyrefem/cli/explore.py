@@ -60,7 +60,7 @@ def explore(
     from tyrefem.cli.sweep_flags import questions_of_flags
     from tyrefem.inputs.origin import StudyOrigin
     from tyrefem.inputs.study_plugins import plugin_summary
-    from tyrefem.realtime.box_model import NEEDS
+    from tyrefem.realtime.box_checks import NEEDS
     from tyrefem.reports.explore import described, write_page
     from tyrefem.variants.schedulers import Here, Local
 

@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.boundaries.rim import LumpedRim
 from tyrefem.brief import Brief
 from tyrefem.errors import InputError, nearest
-from tyrefem.estimates.work import warn_if_long
 from tyrefem.inputs.study import StudyData
 from tyrefem.mechanics.strain_laws import strain_law
 from tyrefem.realtime.box_certificate import BoxCertificate, certified, is_temperature
+from tyrefem.realtime.box_checks import NEEDS, check_cost, check_explored, default_tolerance, refuse_levels
 from tyrefem.realtime.box_runs import SettingTask, outcomes, perform_history, perform_skin
 from tyrefem.realtime.default_box import default_box
 from tyrefem.realtime.drive_inputs import DriveInputs, drive_inputs
@@ -26,20 +25,15 @@ from tyrefem.realtime.setting_arrays import rounded, setting_arrays, step_arrays
 from tyrefem.realtime.setting_solution import Solution
 from tyrefem.realtime.setting_tyre import SettingTyre
 from tyrefem.realtime.settings import FEWEST, TablePoints
-from tyrefem.realtime.suitability import check_suitable
 from tyrefem.realtime.tables import Probe
 from tyrefem.realtime.tyre import STANDSTILL
 from tyrefem.reduced.model import NotReducibleError, ReducedModel
-from tyrefem.reduced.surrogate import LEAST_RUN_TOLERANCE, TRAINING_FACTOR, check_varied
+from tyrefem.reduced.surrogate import LEAST_RUN_TOLERANCE, TRAINING_FACTOR
 from tyrefem.reduced.training import ReducedFineness, trained
 from tyrefem.reduced.training_rounds import Training
-from tyrefem.requirements import Requirements
-from tyrefem.simulation.estimate import RunEstimate
-from tyrefem.variants.answers import highest_name
-from tyrefem.variants.card import flat
 from tyrefem.variants.plan import Plan, plan_of
 from tyrefem.variants.samples import changes_at
-from tyrefem.variants.schedulers import Here, Local, Scheduler
+from tyrefem.variants.schedulers import Here, Scheduler
 
 Array = NDArray[np.float64]
 #: Error of the modes over the allowed error: the fewest modes that keep it are taken. In training: the middle.
@@ -54,12 +48,6 @@ ROUNDS = 3
 FINENESSES = (1, 2)
 #: Settings at which the places of the hottest nodes are searched.
 SEARCHED = 60
-#: Cost: equivalent full runs of training, certificate and search, and strain cycles by finite elements.
-RUNS, CYCLES = 16.0, 20.0
-#: K: footprints by finite elements differ by up to 2 % with their number of harmonics, which depends on the load.
-PRESSED_TOLERANCE = 1.0
-#: Requirements of an exploration on a study.
-NEEDS = Requirements("an exploration")
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,7 +123,7 @@ def explored(
     choice = study.card.explore
     ranges = vary or choice.vary or default_box(study)
     try:
-        _refuse_levels(ranges)
+        refuse_levels(ranges)
         plan = plan_of(
             study,
             ranges,
@@ -155,25 +143,6 @@ def explored(
     return box_model(
         plan, axes=pair, tolerance=tolerance or default_tolerance(study), scheduler=scheduler, progress=progress
     )
-
-
-def _refuse_levels(ranges: Mapping[str, Any]) -> None:
-    """Raise `InputError` for levels of a range: a slider has all its values."""
-    for key, entry in flat(dict(ranges)).items():
-        if (isinstance(entry, tuple) and len(entry) == 3) or (isinstance(entry, Mapping) and "levels" in entry):
-            raise InputError("a slider has no levels: give FROM:TO alone", field=f"vary.{key}")
-
-
-def default_tolerance(study: StudyData) -> float:
-    """Allowed error of the temperatures, K: that of the study's ``[explore]``; else 0.3, or `PRESSED_TOLERANCE`.
-
-    >>> import tyrefem
-    >>> [default_tolerance(tyrefem.study(name)) for name in ("nasa-22x5.5-8pr", "passenger-205-55r16")]
-    [0.3, 1.0]
-    """
-    choice = study.card.explore
-    chosen = "tolerance" in choice.model_fields_set
-    return PRESSED_TOLERANCE if strain_law(study).by_elements and not chosen else choice.tolerance
 
 
 def box_model(
@@ -228,90 +197,38 @@ def box_model(
             lambda done, total: report("certifying", done, total),
         )
         settings = [_numbers(plan, place) for place in places]
-        for fine in fineness:
-            model = trained(training.base, training.snapshots, fine)
-            arrays, about = tables.arrays(model)
-            for steps in FINENESSES:
-                stepped, counts = with_hottest(model, arrays | step_arrays(inputs, steps), about, plan, seed)
-                named = about | {"hot": counts}
-                tyre = SettingTyre(stepped, named)
-                pairs = [(tyre.solve(numbers), full) for numbers, full in zip(settings, fresh, strict=True)]
-                checked = certified(model, pairs, tolerance, len(training.snapshots), about["products"])
-                if checked.worst <= tolerance:
-                    return BoxModel(plan, model, inputs, axes, stepped, named, checked)
+        for model, stepped, named in _models(training, tables, fineness, seed):
+            tyre = SettingTyre(stepped, named)
+            pairs = [(tyre.solve(numbers), full) for numbers, full in zip(settings, fresh, strict=True)]
+            checked = certified(model, pairs, tolerance, len(training.snapshots), named["products"])
+            if checked.worst <= tolerance:
+                return BoxModel(plan, model, inputs, axes, stepped, named, checked)
         training.snapshots += [full.snapshots for full in fresh]
+    raise _not_reducible(checked, tolerance)
+
+
+def _models(
+    training: Training, tables: _Tables, fineness: Sequence[ReducedFineness], seed: int
+) -> Iterator[tuple[ReducedModel, dict[str, Any], dict[str, Any]]]:
+    """Models of the snapshots, the quickest first: modes, arrays with steps, and what names the arrays."""
+    for fine in fineness:
+        model = trained(training.base, training.snapshots, fine)
+        arrays, about = tables.arrays(model)
+        for steps in FINENESSES:
+            stepped = arrays | step_arrays(tables.inputs, steps)
+            hottest, counts = with_hottest(model, stepped, about, tables.plan, seed)
+            yield model, hottest, about | {"hot": counts}
+
+
+def _not_reducible(checked: BoxCertificate, tolerance: float) -> NotReducibleError:
+    """The error of the finest model, with the part that is no product of the numbers."""
     name, error = max(((n, e) for n, e in checked.errors.items() if is_temperature(n)), key=lambda pair: pair[1])
     part, off = max(checked.products.items(), key=lambda pair: pair[1], default=("", 0.0))
     hint = f"; '{part}' is no product of the numbers, by {100 * off:.2g} %" if off > 1e-3 else ""
-    raise NotReducibleError(
+    return NotReducibleError(
         f"the error in fresh full runs is {max(error, checked.field):.3g} K ({error:.3g} K at '{name}'); allowed: "
         f"{tolerance:g} K: choose a smaller box or a larger tolerance{hint}"
     )
-
-
-#: What a slider can move.
-POSSIBLE = (
-    "Sliders move speed, load, pressure, ambient, road_temperature and initial of the drive or of a phase; "
-    "loss_tangent, conductivity, specific_heat and density of materials.REGION; numbers of the laws in boundaries"
-)
-
-
-def check_explored(plan: Plan, tolerance: float) -> None:
-    """Raise `InputError` if a plan's box cannot be explored."""
-    NEEDS.check(plan.study)
-    check_suitable(plan.study)
-    for number in plan.varied:
-        table, last = number.key.split(".")[0], number.key.rpartition(".")[2]
-        field = f"vary.{number.key}"
-        if number.values:
-            raise InputError(
-                f"a list has no slider: give a range or a factor, or make a page of each. {POSSIBLE}", field=field
-            )
-        if last == "duration":
-            raise InputError(f"a duration has no slider: all settings share their times. {POSSIBLE}", field=field)
-        if table in ("section", "mesh", "output", "numerics", "mechanics"):
-            raise InputError(f"has no slider: it needs another mesh or other strain cycles. {POSSIBLE}", field=field)
-    check_varied(plan)
-    known = limited_answers(plan.study)
-    for name in plan.limits:
-        if name not in known:
-            words = f"'{name}' is an answer of a sweep only, a page does not compute it; allowed: {', '.join(known)}"
-            raise InputError(words, field="limits")
-    if tolerance < plan.study.tolerance:
-        raise InputError(
-            f"{tolerance:g} K is less than the time error of the full runs; must be at least numerics.tolerance, "
-            f"{plan.study.tolerance:g} K",
-            field="tolerance",
-        )
-
-
-def limited_answers(study: StudyData) -> list[str]:
-    """Names of the answers that a limit may have: those of `setting_solution`.
-
-    >>> import tyrefem
-    >>> limited_answers(tyrefem.study("nasa-22x5.5-8pr"))[:3]
-    ['hottest_degC', 'carcass_max_degC', 'bead_max_degC']
-    """
-    regions = study.section.regions
-    return [
-        "hottest_degC",
-        *(f"{region}_max_degC" for region in regions),
-        *(name for sensor in study.sensors for name in (f"{sensor}_degC", highest_name(sensor, regions))),
-        *(["rim_degC"] if isinstance(study.card.boundaries.rim, LumpedRim) else []),
-        *("contained-air_degC", "gas_pressure_Pa", "rolling_resistance_N", "rolling_resistance_coefficient"),
-    ]
-
-
-def check_cost(study: StudyData, scheduler: Scheduler) -> None:
-    """Raise `InputError` if the parallel runs do not fit in memory; warn of long work."""
-    run, workers = RunEstimate.of(study), getattr(scheduler, "workers", 1)
-    if isinstance(scheduler, Here | Local):
-        run.check(workers)
-
-    def seconds(run: RunEstimate) -> float:
-        return (RUNS * run.transient_run.time + CYCLES * run.mechanics.time) / workers
-
-    warn_if_long(seconds(run), f"exploring {study.name}", lambda: run.quick_look(seconds))
 
 
 def _numbers(plan: Plan, place: Sequence[float] | Array) -> Array:
