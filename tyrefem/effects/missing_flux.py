@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
 from tyrefem.effects.effect import Effect, Factor, Prior
+from tyrefem.effects.part_of_drive import Begins, Ends, is_outside, stated_times, times_in_words
 from tyrefem.effects.tyre import Tyre
 from tyrefem.quantity import Unit
 
@@ -46,12 +47,8 @@ class MissingFlux(Effect):
         Literal["outer", "tread", "sidewall", "inner", "rim"],
         Field(description="the surface; tread is the part that meets the road", examples=["outer", "tread", "inner"]),
     ] = "outer"
-    begins: Annotated[
-        float | None, Unit("s", ge=0), Field(description="begins at this time of the drive", examples=["300 s"])
-    ] = None
-    ends: Annotated[
-        float | None, Unit("s", ge=0), Field(description="ends at this time of the drive", examples=["600 s"])
-    ] = None
+    begins: Begins = None
+    ends: Ends = None
     into: Annotated[float, Prior("W/m**2", "flux, at the station if there is one", 200.0, -1e5, 1e5)] = 0.0
 
     @model_validator(mode="after")
@@ -65,14 +62,13 @@ class MissingFlux(Effect):
         """Where."""
         about = {"station": self.station, "width": self.width}
         where = {key: f"{value!r} m" for key, value in about.items() if value is not None}
-        when = {"begins": self.begins, "ends": self.ends}
         surface = {} if self.surface == "outer" else {"surface": self.surface}
-        return where | surface | {key: f"{time!r} s" for key, time in when.items() if time is not None}
+        return where | surface | times_in_words(self.begins, self.ends)
 
     @property
     def jumps(self) -> tuple[float, ...]:  # type: ignore[override]
         """Begin and end."""
-        return tuple(time for time in (self.begins, self.ends) if time is not None)
+        return stated_times(self.begins, self.ends)
 
     @property
     def surfaces(self) -> tuple[str, ...]:  # type: ignore[override]
@@ -81,7 +77,7 @@ class MissingFlux(Effect):
 
     def flux(self, tyre: Tyre, surface: str, x: Array, t: float) -> Factor:
         """W/m2 at points x (2, n)."""
-        if (self.begins is not None and t < self.begins) or (self.ends is not None and t > self.ends):
+        if is_outside(t, self.begins, self.ends):
             return 0.0
         if self.station is None or self.width is None:
             return self.into

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from tyrefem.effects.effect import Effect, Factor, Prior
+from tyrefem.effects.part_of_drive import Begins, Ends, is_outside, stated_times, times_in_words
 from tyrefem.effects.tyre import Tyre
 from tyrefem.quantity import Unit
 
@@ -37,30 +38,25 @@ class MissingHeat(Effect):
     region: Annotated[
         str | None, Field(description="the only region that is heated; default: all", examples=["ply"])
     ] = None
-    begins: Annotated[
-        float | None, Unit("s", ge=0), Field(description="begins at this time of the drive", examples=["300 s"])
-    ] = None
-    ends: Annotated[
-        float | None, Unit("s", ge=0), Field(description="ends at this time of the drive", examples=["600 s"])
-    ] = None
+    begins: Begins = None
+    ends: Ends = None
     heat: Annotated[float, Prior("W/m**3", "heat at the station", 5e4, -1e7, 1e7)] = 0.0
 
     @property
     def choice(self) -> dict[str, str]:
         """Where."""
         where = {"station": f"{self.station!r} m", "width": f"{self.width!r} m"}
-        when = {"begins": self.begins, "ends": self.ends}
         region = {} if self.region is None else {"region": self.region}
-        return where | region | {key: f"{time!r} s" for key, time in when.items() if time is not None}
+        return where | region | times_in_words(self.begins, self.ends)
 
     @property
     def jumps(self) -> tuple[float, ...]:  # type: ignore[override]
         """Begin and end."""
-        return tuple(time for time in (self.begins, self.ends) if time is not None)
+        return stated_times(self.begins, self.ends)
 
     def heat_addend(self, tyre: Tyre, zone: str, x: Array, t: float, T: Array) -> Factor:
         """W/m3 at points x (2, n)."""
-        outside = (self.begins is not None and t < self.begins) or (self.ends is not None and t > self.ends)
+        outside = is_outside(t, self.begins, self.ends)
         if outside or tyre.motion(t).rolling_speed == 0 or self.region not in (None, tyre.region(zone)):
             return 0.0
         s, _ = tyre.places(x)

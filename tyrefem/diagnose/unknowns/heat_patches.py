@@ -10,6 +10,7 @@ import numpy as np
 from tyrefem.diagnose.settings import DiagnosisSettings
 from tyrefem.diagnose.unknowns.unknown import Choice, Unknown, of_effect, stated_effect
 from tyrefem.effects import catalogue
+from tyrefem.effects.part_of_drive import times_in_words
 from tyrefem.inputs.study import StudyData
 
 #: Where heat may enter at a station: in all layers, or through a surface. A name that is none of these is a region.
@@ -64,8 +65,8 @@ def _beyond(study: StudyData, name: str, choice: Choice, when: Choice, sd: float
 
 def written_times(begins: float | None, ends: float | None) -> Choice:
     """When a patch begins and ends, s, as the choice of its effect states it; None: the drive's begin or end."""
-    times = (("begins", begins), ("ends", ends))
-    return tuple((name, f"{round(float(time), 1)!r} s") for name, time in times if time is not None)
+    rounded = (None if time is None else round(float(time), 1) for time in (begins, ends))
+    return tuple(times_in_words(*rounded).items())
 
 
 def at_times(always: Unknown, when: Choice) -> Unknown:
