@@ -107,8 +107,8 @@ def _effects() -> Rows:
 
 def _of_cards(key: str) -> Rows:
     """Laws of a table of the material cards: the shipped names, then the plugins."""
-    from tyrefem.materials.card import TAN_DELTA
     from tyrefem.materials.road_friction import FRICTION
+    from tyrefem.materials.tan_delta_card import TAN_DELTA
     from tyrefem.plugins import registry
 
     kind = {"tan-delta-laws": TAN_DELTA, "friction-laws": FRICTION}[key]

@@ -13,8 +13,8 @@ from tyrefem.contracts import effect, law, strain_law, sweep_answer
 from tyrefem.contracts.contract import Contract
 from tyrefem.effects import KIND as EFFECT
 from tyrefem.errors import InputError, PluginWarning
-from tyrefem.materials.card import TAN_DELTA
 from tyrefem.materials.road_friction import FRICTION
+from tyrefem.materials.tan_delta_card import TAN_DELTA
 from tyrefem.mechanics.strain_laws import KIND as STRAIN_LAW
 from tyrefem.plugins import Failure, Kind, Plugin, registry, use
 from tyrefem.plugins.registry import nameless

@@ -69,7 +69,7 @@ def _properties(card: MaterialCard) -> Iterator[tuple[str, Any, str]]:
 
 
 def _loss(loss: TanDeltaLaw) -> str:
-    from tyrefem.materials.card import LossTangent
+    from tyrefem.materials.tan_delta_card import LossTangent
 
     if not isinstance(loss, LossTangent):
         return f"{loss.law}: {'; '.join(card_numbers(loss))}"
