@@ -9,7 +9,6 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tyrefem.brief import counted
 from tyrefem.errors import InputError
@@ -22,7 +21,6 @@ from tyrefem.heating_test.verdict import REMARK
 if TYPE_CHECKING:
     import pandas as pd
 
-Array = NDArray[Any]
 #: Duration of the transient after a switch of the laser, s.
 TRANSIENT = 300.0
 

@@ -6,14 +6,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
 from tyrefem.realtime.box_runs import FullHistory
 from tyrefem.realtime.setting_solution import Solution
 from tyrefem.reduced.model import ReducedModel
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
 from tyrefem.inputs.changes import all_changed, value_at
@@ -28,7 +27,6 @@ from tyrefem.variants.schedulers import Here, Scheduler
 from tyrefem.variants.task import Bundle
 from tyrefem.variants.varied import Varied
 
-Array = NDArray[np.float64]
 #: Time error of the training runs over the wanted tolerance: snapshots may be coarse, validation runs may not.
 TRAINING_FACTOR = 100.0
 #: K: smallest time error of a full run.

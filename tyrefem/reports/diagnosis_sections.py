@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tyrefem.diagnose.words.result_tables import rms_table
 from tyrefem.reports.figures.canvas import Canvas, canvas, draw_outlines
@@ -25,7 +24,6 @@ if TYPE_CHECKING:
     from tyrefem.diagnose.diagnosis import DiagnosisData
     from tyrefem.geometry import Section
 
-Array = NDArray[np.float64]
 DIVERGING = "RdBu_r"
 #: Smallest distance of the two states of a sensor at the crown, as a share of the tyre's width.
 APART = 0.032

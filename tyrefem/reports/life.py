@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tyrefem.fatigue.places import FailurePlace, first_places
 from tyrefem.inputs.origin import StudyOrigin, mesh_summary
@@ -21,7 +20,6 @@ if TYPE_CHECKING:
     from tyrefem.fatigue.life import LifeData
     from tyrefem.fatigue.sensitivity import LifeShift
 
-Array = NDArray[Any]
 #: Files of `write_files`, besides ``summary.json``.
 FILES = ("life.csv", "sensitivity.csv", "life.png", "life.vtu")
 #: What every file of lives says of them.

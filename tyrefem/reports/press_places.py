@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tyrefem.errors import InputError, nearest
 from tyrefem.quantity import parse
@@ -15,8 +14,6 @@ from tyrefem.quantity import parse
 if TYPE_CHECKING:
     from tyrefem.geometry.section import Section
     from tyrefem.mechanics.footprint.press import Pressed
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

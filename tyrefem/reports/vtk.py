@@ -7,10 +7,9 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tyrefem.output import atomic_path
 from tyrefem.reports.grids import SEGMENTS, Plane, Ring, cell_means, numbers
@@ -19,8 +18,6 @@ from tyrefem.reports.vtu import VtuFile, comment
 
 if TYPE_CHECKING:
     from tyrefem.simulation.result import ResultData
-
-Array = NDArray[Any]
 
 
 def write_series(result: ResultData, folder: Path, *, revolved: bool = False, segments: int = SEGMENTS) -> Path:

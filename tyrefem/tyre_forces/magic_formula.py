@@ -7,12 +7,10 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
 from tyrefem.errors import InputError, nearest
 
-Array = NDArray[np.float64]
 #: Coefficients by section of a `.tir` file, in the order of the standard; combined slip and turn slip are left out.
 TABLES = {
     "LONGITUDINAL": "PCX1 PDX1 PDX2 PDX3 PEX1 PEX2 PEX3 PEX4 PKX1 PKX2 PKX3 PHX1 PHX2 PVX1 PVX2 PPX1 PPX2 PPX3 PPX4",

@@ -9,7 +9,6 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tyrefem.diagnose.beside.discrepancy import other_structure
 from tyrefem.diagnose.blind.other_model import STRUCTURAL_MESH, STRUCTURAL_STEP, OtherModel, drawn_model
@@ -30,7 +29,6 @@ from tyrefem.effects import Effect
 from tyrefem.inputs.study import StudyData
 from tyrefem.measured import MeasuredRun
 
-Array = NDArray[np.float64]
 #: Kinds of cases and their shares.
 KINDS = {"one": 0.55, "two": 0.15, "none": 0.15, "outside": 0.15}
 #: Models of the synthetic data: the study's with hidden causes; one that differs in structure, too.

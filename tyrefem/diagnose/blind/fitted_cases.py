@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 import tyrefem
 from tyrefem.diagnose.blind.kept_cases import computed_cases, keep_cases, kept_cases, resuming, tag_for
@@ -33,7 +32,6 @@ from tyrefem.inputs.study import StudyData
 from tyrefem.output import jsonable
 from tyrefem.variants.answer_store import study_digest
 
-Array = NDArray[np.float64]
 #: Sets are drawn from those of up to two effects, and no larger ones are searched.
 SETTINGS = replace(DEFAULT, largest=2)
 #: A cause with which the tyre is impossible is drawn again, at most so often.

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tyrefem.diagnose.heat.courses import BEGINS, CONSTANT, ENDS, Course
 from tyrefem.diagnose.heat.evidence import ProjectedData
@@ -16,7 +15,6 @@ from tyrefem.diagnose.unknowns.heat_patches import patch, written_times
 from tyrefem.diagnose.unknowns.unknown import Unknown
 from tyrefem.inputs.study import StudyData
 
-Array = NDArray[np.float64]
 #: Courses that a study file can state.
 WRITTEN = (CONSTANT, BEGINS, ENDS)
 

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
 from tyrefem.diagnose.data.residuals import Residuals
@@ -17,7 +16,6 @@ from tyrefem.diagnose.unknowns.unknown import Unknown, of_effect
 from tyrefem.effects import catalogue
 from tyrefem.inputs.study import StudyData
 
-Array = NDArray[np.float64]
 #: Heat about a station, flux through a surface about a station, a share of the model's heat, a share of a film.
 HEAT, FLUX, LOSS, FILM = "heat", "flux", "loss", "film"
 #: Unit of the amplitude.

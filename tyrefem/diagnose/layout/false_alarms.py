@@ -6,13 +6,11 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import betaincinv, chdtrc
 
 from tyrefem.diagnose.fitting.pulls import pulls_probability
 from tyrefem.diagnose.layout.linear_layout import LinearLayout
 
-Array = NDArray[np.float64]
 #: Draws that are computed at once.
 BATCH = 2000
 #: Criterion by the held-out runs.

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tyrefem.mechanics.footprint.example_tyre import stress_free
 from tyrefem.mechanics.footprint.harmonics import Harmonics
@@ -13,8 +12,6 @@ from tyrefem.mechanics.footprint.vibration import Vibration
 from tyrefem.mechanics.rolling.rotating_modes import RotatingWaves
 from tyrefem.mechanics.rolling.standing_waves import SteadyWaves
 from tyrefem.mechanics.solid.body import Prestressed
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,6 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
 from tyrefem.errors import InputError
@@ -26,7 +25,6 @@ from tyrefem.tyre_forces.property_file import TyreDimensions
 if TYPE_CHECKING:
     from tyrefem.inputs.study import StudyData
 
-Array = NDArray[np.float64]
 #: Loads by default, over that of the drive's first phase.
 LOADS = (0.5, 0.75, 1.0, 1.25)
 #: Slip angles, rad, slips and cambers, rad, by default. A tyre that mirrors itself needs one sign without camber.

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
 from tyrefem.errors import InputError
@@ -24,7 +23,6 @@ from tyrefem.threads import one_thread
 if TYPE_CHECKING:
     from tyrefem.inputs.study import StudyData
 
-Array = NDArray[np.float64]
 #: What may be varied.
 VARIED = ("slip_angle", "slip")
 

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tyrefem.reports.figures.style import (
     FONT,
@@ -28,7 +27,6 @@ if TYPE_CHECKING:
 
     from tyrefem.geometry import Section
 
-Array = NDArray[np.float64]
 #: Mean width of a letter and height of a line of text, inches.
 LETTER, LINE = 0.072, 0.185
 #: Width of the drawn section and of a colour bar with its labels, inches.

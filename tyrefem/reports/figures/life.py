@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tyrefem.reports.figures.canvas import Canvas, canvas, draw_outlines, region_labels, sides
 from tyrefem.reports.figures.cells import parts_of
@@ -18,7 +17,6 @@ if TYPE_CHECKING:
     from tyrefem.fatigue.life import LifeData
     from tyrefem.fatigue.places import FailurePlace
 
-Array = NDArray[np.float64]
 #: Decades of life that the colours show, from the shortest one.
 DECADES = 5
 #: Colours from short to long life.
