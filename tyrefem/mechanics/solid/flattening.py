@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import functools
 import math
+from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -162,34 +164,26 @@ def flatten(
         )
     nodes = tyre.body.rings.boundary_nodes(touching)
     now = start or Flattened(tyre, 0.0, tyre.displacement, np.zeros(len(nodes)), touching)
-    before, free = now, reach(tyre, touching)
+    free = reach(tyre, touching)
+
+    def inside(starts: Sequence[Array], forces: Array, radius: float) -> tuple[Array, Array, tuple[float, ...]]:
+        """The equilibrium from the first displacement that leads to it."""
+        for displacement in starts[:-1]:
+            with suppress(StuckError):
+                return equilibrium_inside(tyre.body, tyre.pressure, nodes, displacement, forces, radius, choice)
+        return equilibrium_inside(tyre.body, tyre.pressure, nodes, starts[-1], forces, radius, choice)
+
     if near is not None and 0 < free - near.radius <= deflection:
-        try:
-            displacement, forces, history = equilibrium_inside(
-                tyre.body, tyre.pressure, nodes, near.displacement, near.forces, near.radius, choice
-            )
+        with suppress(StuckError):
+            displacement, forces, history = inside([near.displacement], near.forces, near.radius)
             now = Flattened(tyre, free - near.radius, displacement, forces, touching, residuals=(history,))
-            before = now
-        except StuckError:
-            pass
+    before = now
     step = choice.first_step * free
     steps, residuals = list(now.steps), list(now.residuals)
     while now.deflection < deflection:
         aim = min(deflection, now.deflection + step)
-        past = now.deflection - before.deflection
-        share = (aim - now.deflection) / past if past > 0 else 0.0
-        guess = now.displacement + share * (now.displacement - before.displacement)
         try:
-            try:
-                displacement, forces, history = equilibrium_inside(
-                    tyre.body, tyre.pressure, nodes, guess, now.forces, free - aim, choice
-                )
-            except StuckError:
-                if not share:
-                    raise
-                displacement, forces, history = equilibrium_inside(
-                    tyre.body, tyre.pressure, nodes, now.displacement, now.forces, free - aim, choice
-                )
+            displacement, forces, history = inside(_starts(before, now, aim), now.forces, free - aim)
         except StuckError as stuck:
             step = (aim - now.deflection) / 2
             if step < choice.smallest_step * free:
@@ -204,3 +198,12 @@ def flatten(
         before, now = now, Flattened(tyre, aim, displacement, forces, touching, tuple(steps), tuple(residuals))
         step *= 1.5 if len(history) <= 8 else 1.0
     return now
+
+
+def _starts(before: Flattened, now: Flattened, deflection: float) -> list[Array]:
+    """Displacements to start from at a larger deflection: the motion continued, if there was one, and the last."""
+    past = now.deflection - before.deflection
+    if not past > 0:
+        return [now.displacement]
+    share = (deflection - now.deflection) / past
+    return [now.displacement + share * (now.displacement - before.displacement), now.displacement]
