@@ -124,24 +124,7 @@ def named_from(
     InputError : a missing name (with the nearest one in the file), an element in no or two regions, a surface facet
         in no or two boundaries, cells that are not all triangles or all quadrilaterals.
     """
-    blocks = [index for index, block in enumerate(raw.cells) if block.type in CORNERS and len(block.data)]
-    kinds = {CORNERS[raw.cells[index].type] for index in blocks}
-    if len(kinds) != 1:
-        listing = ", ".join(sorted({block.type for block in raw.cells})) or "none"
-        raise InputError(f"needs cells that are all triangles or all quadrilaterals; found: {listing}")
-    corners = kinds.pop()
-    elements = np.concatenate([raw.cells[index].data[:, :corners] for index in blocks]).astype(np.int64)
-    starts = dict(zip(blocks, np.cumsum([0, *(len(raw.cells[i].data) for i in blocks[:-1])]), strict=True))
-    faces: dict[str, list[Indices]] = {}
-    edges: dict[str, list[Indices]] = {}
-    for name, block, members in _groups(raw):
-        if len(members) == 0:
-            continue
-        name = (names or {}).get(name, name)
-        if block in starts:
-            faces.setdefault(name, []).append(members + starts[block])
-        elif raw.cells[block].type in EDGES:
-            edges.setdefault(name, []).append(raw.cells[block].data[members, :2].astype(np.int64))
+    elements, faces, edges = _named_cells(raw, names or {})
     _known_names(raw, names)
     points = raw.points[:, :2] if points is None else points
     regions_found = {name: np.unique(np.concatenate(parts)) for name, parts in faces.items()}
@@ -158,19 +141,7 @@ def named_from(
     number[used] = np.arange(len(used))
     _check_sides(mesh)
     surface = mesh.boundary_facets()
-    named: dict[str, Indices] = {}
-    for name, parts in edges.items():
-        try:
-            facets = find_facets(mesh, number[np.concatenate(parts)])
-        except ValueError:
-            raise InputError(f"lines of boundary '{name}' are not sides of elements{_coincident(points)}") from None
-        named[name] = facets[np.isin(facets, surface)]
-    for name, nodes in (getattr(raw, "point_sets", None) or {}).items():
-        name = (names or {}).get(name, name)
-        if name not in named:
-            here = np.isin(mesh.facets[:, surface], number[np.asarray(nodes, dtype=np.int64)]).all(axis=0)
-            named[name] = surface[here]
-    named = {name: facets for name, facets in named.items() if len(facets)}
+    named = _named_facets(raw, mesh, edges, names or {}, number, points)
     _required(boundaries, named, "boundary")
     places = {name: np.searchsorted(surface, facets) for name, facets in named.items()}
     places = _without_further(places, boundaries, len(surface))
@@ -179,6 +150,51 @@ def named_from(
     except InputError as error:
         raise InputError(f"{error.message}{_coincident(points)}") from None
     return mesh.with_boundaries({name: named[name] for name in places})
+
+
+def _named_cells(
+    raw: Any, names: Mapping[str, str]
+) -> tuple[Indices, dict[str, list[Indices]], dict[str, list[Indices]]]:
+    """Nodes of the elements, region -> parts of its elements, and boundary -> parts of its node pairs (n, 2)."""
+    blocks = [index for index, block in enumerate(raw.cells) if block.type in CORNERS and len(block.data)]
+    kinds = {CORNERS[raw.cells[index].type] for index in blocks}
+    if len(kinds) != 1:
+        listing = ", ".join(sorted({block.type for block in raw.cells})) or "none"
+        raise InputError(f"needs cells that are all triangles or all quadrilaterals; found: {listing}")
+    corners = kinds.pop()
+    elements = np.concatenate([raw.cells[index].data[:, :corners] for index in blocks]).astype(np.int64)
+    starts = dict(zip(blocks, np.cumsum([0, *(len(raw.cells[i].data) for i in blocks[:-1])]), strict=True))
+    faces: dict[str, list[Indices]] = {}
+    edges: dict[str, list[Indices]] = {}
+    for name, block, members in _groups(raw):
+        if len(members) == 0:
+            continue
+        name = names.get(name, name)
+        if block in starts:
+            faces.setdefault(name, []).append(members + starts[block])
+        elif raw.cells[block].type in EDGES:
+            edges.setdefault(name, []).append(raw.cells[block].data[members, :2].astype(np.int64))
+    return elements, faces, edges
+
+
+def _named_facets(
+    raw: Any, mesh: Any, edges: Mapping[str, list[Indices]], names: Mapping[str, str], number: Indices, points: Array
+) -> dict[str, Indices]:
+    """Boundary -> its facets on the surface, by lines or point sets; ``number``: of the file's nodes in the mesh."""
+    surface = mesh.boundary_facets()
+    named: dict[str, Indices] = {}
+    for name, parts in edges.items():
+        try:
+            facets = find_facets(mesh, number[np.concatenate(parts)])
+        except ValueError:
+            raise InputError(f"lines of boundary '{name}' are not sides of elements{_coincident(points)}") from None
+        named[name] = facets[np.isin(facets, surface)]
+    for name, nodes in (getattr(raw, "point_sets", None) or {}).items():
+        name = names.get(name, name)
+        if name not in named:
+            here = np.isin(mesh.facets[:, surface], number[np.asarray(nodes, dtype=np.int64)]).all(axis=0)
+            named[name] = surface[here]
+    return {name: facets for name, facets in named.items() if len(facets)}
 
 
 def _without_further(groups: dict[str, Indices], required: Iterable[str], count: int) -> dict[str, Indices]:
