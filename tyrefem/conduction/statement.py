@@ -44,13 +44,7 @@ def balance_of(
         for i, c in enumerate(conditions):
             entry, field = ("boundary", name, i), f"boundaries.{name}"
             if isinstance(c, Film):
-                sink = None
-                if isinstance(c.sink, str):
-                    if c.sink not in numbers:
-                        hint = nearest(c.sink, numbers) if numbers else "; the problem has none"
-                        raise InputError(f"unknown reservoir {c.sink!r}{hint}", field=f"{field}.sink")
-                    sink = numbers[c.sink]
-                loads.append((entry, FilmLoad(surface, c, field, sink)))
+                loads.append((entry, FilmLoad(surface, c, field, _reservoir(c, numbers, field))))
             elif isinstance(c, Flux):
                 loads.append((entry, FluxLoad(surface, c, field)))
             elif isinstance(c, Radiation):
@@ -67,6 +61,16 @@ def balance_of(
         for index, load in reservoir_loads(numbers[name], name, reservoir, numbers):
             loads.append((("reservoir", name, index), load))
     return HeatBalance(ops, dict(regions), loads, fixed, dict(reservoirs), states)
+
+
+def _reservoir(film: Film, numbers: Mapping[str, int], field: str) -> int | None:
+    """Number of the reservoir behind a film; None: its sink is a temperature."""
+    if not isinstance(film.sink, str):
+        return None
+    if film.sink not in numbers:
+        hint = nearest(film.sink, numbers) if numbers else "; the problem has none"
+        raise InputError(f"unknown reservoir {film.sink!r}{hint}", field=f"{field}.sink")
+    return numbers[film.sink]
 
 
 def check_partition(ops: Operators, regions: Mapping[str, Material]) -> None:
