@@ -208,22 +208,7 @@ def surrogate(
             model, [plan.study.replace(training.variant(place)) for place in places], plan.time_to
         )
         check_reducible(reduced)
-        both = [
-            (reduced_outcome.answers, full_run)
-            for reduced_outcome, full_run in zip(reduced, full_runs, strict=True)
-            if isinstance(reduced_outcome, Answered) and isinstance(full_run, FullRun)
-        ]
-        if not both:
-            raise NotReducibleError("all validation runs failed")
-        pairs = [(answered, full_run.answers) for answered, full_run in both]
-        on_own_mesh = [
-            (answered, full_run.own_answers) for answered, full_run in both if full_run.own_answers is not None
-        ]
-        certificate = replace(
-            certified(pairs, tolerance, known, training.correction_count, on_own_mesh),
-            meshes=between_meshes(full_runs),
-            energies=None if training.cycles is None else training.cycles.error,
-        )
+        certificate = _certificate(training, reduced, full_runs, tolerance, known)
         if certificate.good:
             model = replace(model, inputs=learnt_inputs(model, plan.varied, len(plan.variants)))
             return Surrogate(model, plan.varied, certificate, plan.time_to)
@@ -236,6 +221,26 @@ def surrogate(
     raise NotReducibleError(
         f"after {certificate.amended} corrections the error in the validation runs is {certificate.worst:.3g} K;"
         f" allowed: {SAFETY:g} x {tolerance:g} K"
+    )
+
+
+def _certificate(
+    training: Training, reduced: Sequence[ReducedOutcome], full_runs: Sequence[object], tolerance: float, known: int
+) -> SurrogateCertificate:
+    """The reduced answers against the full runs of the same variants; ``known``: snapshots of the model."""
+    both = [
+        (reduced_outcome.answers, full_run)
+        for reduced_outcome, full_run in zip(reduced, full_runs, strict=True)
+        if isinstance(reduced_outcome, Answered) and isinstance(full_run, FullRun)
+    ]
+    if not both:
+        raise NotReducibleError("all validation runs failed")
+    pairs = [(answered, full_run.answers) for answered, full_run in both]
+    on_own_mesh = [(answered, full_run.own_answers) for answered, full_run in both if full_run.own_answers is not None]
+    return replace(
+        certified(pairs, tolerance, known, training.correction_count, on_own_mesh),
+        meshes=between_meshes(full_runs),
+        energies=None if training.cycles is None else training.cycles.error,
     )
 
 
