@@ -14,7 +14,7 @@ from tyrefem.errors import InputError
 from tyrefem.inputs.loading import LoadCase
 from tyrefem.mechanics.barrel import Barrel, provider
 from tyrefem.mechanics.cycle_schedule import cycle_schedule
-from tyrefem.mechanics.finite_elements import GaussPoints
+from tyrefem.mechanics.point_energies import GaussPoints
 from tyrefem.mechanics.solid.body import Body
 from tyrefem.mechanics.solid.compounds import neo_hookean
 from tyrefem.mechanics.solid.cords import CordLayer

@@ -12,8 +12,8 @@ from typing import Any
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
 from tyrefem.mechanics.cycle_schedule import CycleSchedule, cycle_schedule, same_cycles
-from tyrefem.mechanics.finite_elements import PointEnergies
 from tyrefem.mechanics.nearby_cycles import NearbyCycles, SolvedCycles
+from tyrefem.mechanics.point_energies import PointEnergies
 from tyrefem.mechanics.strain_laws import strain_law
 from tyrefem.plugins.kind import is_ours
 from tyrefem.simulation.result import ResultData

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from tyrefem.cache import Cache
 from tyrefem.errors import InputError
-from tyrefem.mechanics.finite_elements import GaussPoints, PointEnergies
 from tyrefem.mechanics.footprint.pressed_tyre import pressed_tyre
+from tyrefem.mechanics.point_energies import GaussPoints, PointEnergies
 from tyrefem.mechanics.solid.cylinder import CylinderChoice
 from tyrefem.mechanics.strain_cycle import StrainCycle, Zone
 

@@ -16,7 +16,7 @@ from tyrefem.errors import InputError
 from tyrefem.inputs.loading import LoadCase, PressedContact
 from tyrefem.inputs.uncertain_numbers import UncertainNumber, written_at
 from tyrefem.mechanics.cycle_schedule import CycleSchedule, cycle_schedule, same_cycles
-from tyrefem.mechanics.finite_elements import PointEnergies, padded
+from tyrefem.mechanics.point_energies import PointEnergies, padded
 from tyrefem.mechanics.rolling.friction_rings import CHANGING
 from tyrefem.mechanics.solved_cases import KnotSolver
 from tyrefem.mechanics.strain_cycle import solved_case

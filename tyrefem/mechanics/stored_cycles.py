@@ -17,8 +17,8 @@ from tyrefem.brief import Brief
 from tyrefem.inputs.loading import LoadCase, PressedContact
 from tyrefem.inputs.wheel_state import WheelState
 from tyrefem.mechanics.cycle_schedule import CycleSchedule
-from tyrefem.mechanics.finite_elements import GaussPoints, PointEnergies
 from tyrefem.mechanics.footprint.strain_harmonics import LinearisationError
+from tyrefem.mechanics.point_energies import GaussPoints, PointEnergies
 from tyrefem.mechanics.rolling.friction_rings import FrictionRings
 from tyrefem.mechanics.solved_cases import KnotSolver
 from tyrefem.mechanics.strain_cycle import Zone

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from tyrefem.errors import InputError
 from tyrefem.inputs.loading import TrR64
 from tyrefem.inputs.study_plugins import plugin_summary
-from tyrefem.mechanics.finite_elements import GaussPoints
+from tyrefem.mechanics.point_energies import GaussPoints
 from tyrefem.mechanics.strain_cycle import StrainCycle, Zone
 from tyrefem.mechanics.strain_laws import strain_laws
 from tyrefem.requirements import Requirements
