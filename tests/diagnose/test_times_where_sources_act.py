@@ -1,4 +1,7 @@
-"""Sources are dated where they act, as late sensors show them late: times hold the truth as often as stated."""
+"""Sources are estimated where they act: late sensors show them late, and weak films let them warm the tyre more.
+
+Times and amounts hold the truth as often as stated.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +14,7 @@ from numpy.typing import NDArray
 from tyrefem.diagnose.heat.acting import ActingHeat, ActingSource, about_point, best_point, repeated
 from tyrefem.diagnose.heat.courses import Course, CourseGrid, courses
 from tyrefem.diagnose.heat.evidence import ProjectedData
-from tyrefem.diagnose.heat.sources import DatedSource, Place
+from tyrefem.diagnose.heat.sources import EstimatedSource, Place
 from tyrefem.diagnose.law.evidence import LawData, law_data
 from tyrefem.diagnose.law.heat_law import PlaceLaw, place_law
 from tyrefem.diagnose.law.terms import DriveVariables, drive_variables, fine_times, law_terms
@@ -98,7 +101,7 @@ def law_variables() -> DriveVariables:
     return drive_variables(GRID, rows)
 
 
-def estimated(measured: Array) -> tuple[PlaceLaw, PlaceLaw, DatedSource]:
+def estimated(measured: Array) -> tuple[PlaceLaw, PlaceLaw, EstimatedSource]:
     """The law about x = 0; the same law and the source, dated about a point where the source acts."""
     at = np.zeros(4)
     first = ProjectedData(measured - readings(at, NONE), slopes(at, NONE), np.ones(4))
@@ -116,10 +119,9 @@ def estimated(measured: Array) -> tuple[PlaceLaw, PlaceLaw, DatedSource]:
         return ActingHeat.of(there, heat.entries, GRID), float(r @ r), point.misfit
 
     law = place_law(of_place(first), variables, law_terms(variables), inside=True)
-    acting = repeated(ActingHeat(first, ((PLACE, begun(first)),), (None,)), again)
+    acting = repeated(ActingHeat(first, ((PLACE, begun(first)),), ()), again)
     (source,) = acting.sources
-    assert source is not None
-    return law, law.dated(of_place(acting.data), variables, inside=True), source
+    return law, law.as_it_acts(of_place(acting.data), variables, inside=True), source
 
 
 def test_times_of_a_switch_hold_the_truth_as_often_as_stated_where_sensors_may_be_late() -> None:
@@ -139,14 +141,22 @@ def test_times_of_a_switch_hold_the_truth_as_often_as_stated_where_sensors_may_b
         assert deviations.max() < 4
 
 
-def test_a_law_without_a_time_stays_as_it_is() -> None:
+def test_a_law_without_a_time_gets_its_amplitude_where_it_acts() -> None:
     variables = law_variables()
-    nothing_late = readings(np.zeros(4), [0.4 * speed * np.ones(len(FINE)) for speed in SPEEDS])
-    data = ProjectedData(nothing_late - readings(np.zeros(4), NONE), slopes(np.zeros(4), NONE), np.ones(4))
-    of_place = law_data(data, COLUMNS, SD, variables.hats)
-    law = place_law(of_place, variables, law_terms(variables), inside=True)
+    steady = [0.4 * speed * np.ones(len(FINE)) for speed in SPEEDS]
+
+    def of_place(measured: Array) -> LawData:
+        data = ProjectedData(measured - readings(np.zeros(4), NONE), slopes(np.zeros(4), NONE), np.ones(4))
+        return law_data(data, COLUMNS, SD, variables.hats)
+
+    stated = of_place(readings(np.zeros(4), steady))
+    law = place_law(stated, variables, law_terms(variables), inside=True)
     assert np.isnan(law.time)
-    assert law.dated(of_place, variables, inside=True) is law
+    same = law.as_it_acts(stated, variables, inside=True)
+    assert (same.amplitude, same.sd) == pytest.approx((law.amplitude, law.sd), rel=1e-9)
+    halved = law.as_it_acts(of_place(readings(np.zeros(4), [course / 2 for course in steady])), variables, inside=True)
+    assert halved.fit == law.fit
+    assert halved.amplitude == pytest.approx(law.amplitude / 2, rel=0.02)
 
 
 def test_the_model_about_a_point_gives_the_readings_there() -> None:
@@ -181,3 +191,50 @@ def test_a_source_is_stated_with_its_times() -> None:
     late = ActingSource(2.0, np.float64(300.04), np.float64(600.0)).unknown(patch)  # type: ignore[arg-type]
     assert late.choice == (("station", "60 mm"), ("begins", "300.0 s"), ("ends", "600.0 s"))
     assert late.key == "effects.missing-heat.60 mm.begins 300.0 s.ends 600.0 s.heat"
+
+
+def with_film(film: float, courses_by_run: list[Array]) -> Array:
+    """Whitened readings with a film exp(0.2 ``film``) times as strong."""
+    return np.asarray(readings(np.zeros(4), courses_by_run) * np.exp(-0.2 * film))
+
+
+def film_slope(film: float, by_run: list[Array]) -> Array:
+    """(n, 1) differences of the readings."""
+    return ((with_film(film + 0.02, by_run) - with_film(film - 0.02, by_run)) / 0.04)[:, None]
+
+
+def steady_amounts(measured: Array) -> tuple[EstimatedSource, EstimatedSource]:
+    """Amount of a constant source about no source, and about the point where it acts."""
+    first = ProjectedData(measured - with_film(0.0, NONE), film_slope(0.0, NONE), np.ones(1))
+    steady = next(course for course in courses(GRID) if course.kind == "constant")
+    free = np.full(1, np.inf)
+
+    def again(heat: ActingHeat) -> tuple[ActingHeat, float, float]:
+        data = replace(heat.data, weight=1.0)
+        point = best_point(data, -free, free, heat.entries, GRID)
+        by_run = [acting.course(FINE) for acting in point.sources[0]]
+        (film,) = point.x
+        r = measured - with_film(film, by_run)
+        there = about_point(data.sd, point, r, film_slope(film, by_run), heat.entries, GRID)
+        return ActingHeat.of(there, heat.entries, GRID), float(r @ r), point.misfit
+
+    entries = ((PLACE, steady),)
+    (before,), (after,) = (
+        ActingHeat.of(first, entries, GRID).sources,
+        repeated(ActingHeat(first, entries, ()), again).sources,
+    )
+    return before, after
+
+
+@pytest.mark.parametrize("film", [-2.0, 2.0])
+def test_amounts_hold_the_truth_where_a_film_is_far_from_what_was_stated(film: float) -> None:
+    """About no source the response to it is that of the stated film, off by the film's factor."""
+    amount, by_run = 5.0, [np.full(len(FINE), 5.0)] * len(SPEEDS)
+    before, after = [], []
+    for seed in range(8):
+        noise = np.random.default_rng(seed).normal(size=len(COLUMNS))
+        first, acting = steady_amounts(with_film(film, by_run) + noise)
+        before.append((first.amount - amount) / first.sd)
+        after.append((acting.amount - amount) / acting.sd)
+    assert np.mean(np.abs(before)) > 5
+    assert np.mean(np.abs(after)) < 1.5

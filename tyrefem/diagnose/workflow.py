@@ -23,7 +23,7 @@ from tyrefem.diagnose.forward.forward_model import ForwardModel
 from tyrefem.diagnose.forward.multifidelity import Predictions
 from tyrefem.diagnose.forward.strain_law_study import by_law
 from tyrefem.diagnose.forward.worker_queues import number_of
-from tyrefem.diagnose.heat.acting import where_it_acts, with_times
+from tyrefem.diagnose.heat.acting import as_it_acts, where_it_acts
 from tyrefem.diagnose.heat.over_time import HeatOverTime
 from tyrefem.diagnose.law.search import HeatLaw, heat_law
 from tyrefem.diagnose.law.signatures import law_signatures
@@ -269,14 +269,14 @@ class _SimulationCounter:
 def _with_law(
     residuals: Residuals, evaluations: Evaluations, ranking: Ranking, heat: HeatOverTime, work: SimulationWork
 ) -> tuple[Ranking, HeatLaw | None]:
-    """The law of the missing heat, and the ranking with times of its sources from where they act."""
+    """The law of the missing heat, and the ranking with times and amounts of its sources from where they act."""
     work.tick("inferring the law of the missing heat")
     law = heat_law(residuals, evaluations, heat)
     acting = where_it_acts(residuals, evaluations, heat)
     if acting is None:
         return ranking, law
-    missing = replace(ranking.missing, over_time=with_times(heat, acting))
-    return replace(ranking, missing=missing), None if law is None else law.dated(acting.data)
+    over_time = as_it_acts(residuals.study, residuals.settings, heat, acting)
+    return replace(ranking, missing=replace(ranking.missing, over_time=over_time)), law and law.as_it_acts(acting.data)
 
 
 def _after(

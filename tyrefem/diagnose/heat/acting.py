@@ -1,7 +1,8 @@
-"""Times of sources of unknown origin in a linear model about the point where they act.
+"""Times and amounts of sources of unknown origin in a linear model about the point where they act.
 
-Base numbers and sensors change the response to a source, too: a late sensor shows it late, one nearer to it more. A
-model about a point without sources leaves that out, and tells their times too surely.
+Base numbers and sensors change the response to a source, too: a late sensor shows it late, one nearer to it more, and
+a film weaker than stated lets it warm the tyre more. A model about a point without sources leaves that out: it tells
+their times too surely, and their amounts wrongly.
 """
 
 from __future__ import annotations
@@ -20,16 +21,19 @@ from tyrefem.diagnose.forward.evaluations import Evaluations
 from tyrefem.diagnose.heat.courses import BEGINS, ENDS, GROWS, PHASE, Course, CourseGrid
 from tyrefem.diagnose.heat.evidence import ProjectedData
 from tyrefem.diagnose.heat.over_time import HeatOverTime
-from tyrefem.diagnose.heat.sources import CLEAR, DatedSource, Place, dated, misfit
+from tyrefem.diagnose.heat.sources import EstimatedSource, Place, UnknownSource, estimated, misfit
+from tyrefem.diagnose.heat.values import WRITTEN, source_unknown, values_with_sources
 from tyrefem.diagnose.inference.evidence import posterior
+from tyrefem.diagnose.settings import DiagnosisSettings
 from tyrefem.diagnose.unknowns.heat_patches import at_times, written_times
 from tyrefem.diagnose.unknowns.unknown import Unknown
+from tyrefem.inputs.study import StudyData
 
 Array = NDArray[np.float64]
 Estimate = TypeVar("Estimate")
 #: Most linear models about points where sources act. The last one is that about a point where the misfit is above that
 #: of the linear model before by no more than this share.
-ROUNDS, NEAR = 4, 0.05
+ROUNDS, NEAR = 6, 0.002
 
 
 def repeated(first: Estimate, again: Callable[[Estimate], tuple[Estimate, float, float] | None]) -> Estimate:
@@ -161,39 +165,38 @@ def simulated_at(
 
 @dataclass(frozen=True, eq=False)
 class ActingHeat(Brief):
-    """Sources of known places and kinds of course, dated anew.
+    """Sources of known places and kinds of course, estimated anew.
 
     Parameters
     ----------
     data : linear model about the point where they act. entries : places with their courses. sources : by entry, its
-        time and amount; None without a time.
+        time, if it has one, and its amount; empty before they are estimated.
     """
 
     data: ProjectedData
     entries: tuple[tuple[Place, Course], ...]
-    sources: tuple[DatedSource | None, ...]
+    sources: tuple[EstimatedSource, ...]
 
     @classmethod
     def of(cls, data: ProjectedData, entries: Sequence[tuple[Place, Course]], grid: CourseGrid) -> ActingHeat:
-        """The times that explain the data best, one source after the other."""
+        """The times that explain the data best, and the amounts, one source after the other."""
         data = replace(data, weight=1.0 / max(1.0, misfit(data, entries) / len(data.data)))
-        current, sources = list(entries), list[DatedSource | None]()
+        current, sources = list(entries), list[EstimatedSource]()
         for number, (place, course) in enumerate(entries):
             others = [entry for other, entry in enumerate(current) if other != number]
-            source = None if course.time is None else dated(data, place, course.kind, others, grid)
+            source = estimated(data, place, course, others, grid)
             sources.append(source)
-            if source is not None:
-                current[number] = place, source.course
+            current[number] = place, source.course
         return cls(data, tuple(current), tuple(sources))
 
 
 def where_it_acts(residuals: Residuals, evaluations: Evaluations, heat: HeatOverTime) -> ActingHeat | None:
-    """The sources dated about the point where they act, see `repeated`.
+    """The sources estimated about the point where they act, see `repeated`.
 
-    None if no clear source has a time, if no tyre is possible there, or if an amount is no longer clear there.
+    None if no source is clear, if no tyre is possible there, or if an amount that was clear is no longer clear there.
     """
     basis = heat.basis
-    if basis is None or not any(math.isfinite(source.time) for source in heat.clear):
+    if basis is None or not heat.clear:
         return None
     low, high = (np.array([getattr(each, side) for each in basis.nuisance]) for side in ("low", "high"))
 
@@ -206,23 +209,41 @@ def where_it_acts(residuals: Residuals, evaluations: Evaluations, heat: HeatOver
         data = about_point(exact.sd, point, *there, current.entries, basis.grid)
         return ActingHeat.of(data, current.entries, basis.grid), float(there[0] @ there[0]), point.misfit
 
-    first = ActingHeat(basis.data, basis.entries, (None,) * len(basis.entries))
+    first = ActingHeat(basis.data, basis.entries, ())
     acting = repeated(first, again)
-    unclear = any(source is not None and abs(source.amount) <= CLEAR * source.sd for source in acting.sources)
-    return None if acting is first or unclear else acting
+    if acting is first:
+        return None
+    known = _by_place(acting)
+    unclear = any(not known[source.station, source.where].clear for source in heat.clear)
+    return None if unclear else acting
 
 
-def with_times(heat: HeatOverTime, acting: ActingHeat) -> HeatOverTime:
-    """The sources with times from where they act; of both intervals the wider one. Amounts stay the amended study's."""
-    new = {
-        (place.station, place.where): source
-        for (place, _), source in zip(acting.entries, acting.sources, strict=True)
-        if source is not None
+def _by_place(acting: ActingHeat) -> dict[tuple[float, str], EstimatedSource]:
+    return {
+        (place.station, place.where): source for (place, _), source in zip(acting.entries, acting.sources, strict=True)
     }
-    sources = tuple(
-        replace(source, time=new[place].time, time_sd=max(new[place].time_sd, source.time_sd))
-        if (place := (source.station, source.where)) in new
-        else source
-        for source in heat.sources
-    )
-    return replace(heat, sources=sources)
+
+
+def as_it_acts(study: StudyData, settings: DiagnosisSettings, heat: HeatOverTime, acting: ActingHeat) -> HeatOverTime:
+    """The sources with times and amounts from where they act, also for the amended study.
+
+    Of both intervals the wider one: another point adds no readings. A free course keeps what was estimated about no
+    source.
+    """
+    known = _by_place(acting)
+
+    def updated(source: UnknownSource) -> UnknownSource:
+        new = known[source.station, source.where]
+        if math.isfinite(source.time):
+            source = replace(source, time=new.time, time_sd=max(new.time_sd, source.time_sd))
+        sd = max(new.sd, source.sd)
+        return replace(source, amount=new.amount, sd=sd) if new.course.kind in WRITTEN else source
+
+    sources = tuple(map(updated, heat.sources))
+    if not heat.unknowns or heat.basis is None:
+        return replace(heat, sources=sources)
+    clear = {(source.station, source.where) for source in heat.clear}
+    entries = [(place, course) for place, course in acting.entries if (place.station, place.where) in clear]
+    named = [(source_unknown(study, settings, *entry), *entry) for entry in entries]
+    values, sd = values_with_sources(acting.data, heat.basis.nuisance, named)
+    return replace(heat, sources=sources, values=values, sd=sd, unknowns=tuple(unknown for unknown, _, _ in named))

@@ -192,8 +192,11 @@ def timed(
 
 
 @dataclass(frozen=True, eq=False)
-class DatedSource(Brief):
-    """A source whose course switches: the course of the best time, mean and sd of the time (s), amount and its sd."""
+class EstimatedSource(Brief):
+    """A source of a known kind of course, of the best time if it switches.
+
+    ``time``, ``time_sd``: mean and sd of its time, s; NaN without one. ``amount``, ``sd``: W/m3 or W/m2.
+    """
 
     course: Course
     time: float
@@ -201,16 +204,23 @@ class DatedSource(Brief):
     amount: float
     sd: float
 
+    @property
+    def clear(self) -> bool:
+        """Whether the amount differs from zero by more than two standard deviations."""
+        return abs(self.amount) > CLEAR * self.sd
 
-def dated(
-    data: ProjectedData, place: Place, kind: str, others: Sequence[tuple[Place, Course]], grid: CourseGrid
-) -> DatedSource:
-    """The time and amount of a source with a course of a known kind, beside other sources."""
-    of_kind = [course for course in told_courses(place, grid) if course.kind == kind]
-    gains = np.array([evidence(data, [*others, (place, course)]) for course in of_kind])
+
+def estimated(
+    data: ProjectedData, place: Place, course: Course, others: Sequence[tuple[Place, Course]], grid: CourseGrid
+) -> EstimatedSource:
+    """The amount of a source with a course of this kind, and its time if it switches, beside other sources."""
+    if course.time is None:
+        return EstimatedSource(course, math.nan, math.nan, *_amount(data, place, course, others))
+    of_kind = [each for each in told_courses(place, grid) if each.kind == course.kind]
+    gains = np.array([evidence(data, [*others, (place, each)]) for each in of_kind])
     best = of_kind[int(gains.argmax())]
-    times = mean_time([course.time for course in of_kind], gains)
-    return DatedSource(best, *times, *_amount(data, place, best, others))
+    times = mean_time([each.time for each in of_kind], gains)
+    return EstimatedSource(best, *times, *_amount(data, place, best, others))
 
 
 def _clearest(

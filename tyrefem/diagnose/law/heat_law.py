@@ -104,21 +104,21 @@ class PlaceLaw(Brief):
         """(n,) at fine times, with its amplitude."""
         return self.amplitude * self.fit.strength(dict(self.terms.features))
 
-    def dated(self, data: LawData, variables: DriveVariables, *, inside: bool) -> PlaceLaw:
-        """The same law with switch and amplitude by other data, those about a point where the source acts.
+    def as_it_acts(self, data: LawData, variables: DriveVariables, *, inside: bool) -> PlaceLaw:
+        """The same law with switch, if it has one, and amplitude by other data, those about a point where it acts.
 
-        The wider of both intervals of the time counts: another point adds no readings. This law if it has no time, or
-        if its amplitude is not clear there.
+        The wider of both intervals counts: another point adds no readings. This law if its amplitude is not clear
+        there.
         """
-        if math.isnan(self.time):
-            return self
-        data, features = data.over(self.inflation), dict(self.terms.features)
-        of_kind = [each for each in switches(variables, inside=inside) if each.kind == self.fit.switch.kind]
-        gains = _over_times(data, features, self.fit, of_kind)
-        time, time_sd = mean_time([switch.time for switch in of_kind], gains)
-        fit = replace(self.fit, switch=of_kind[int(gains.argmax())])
-        amplitude, sd = _amplitude(data, features, fit)
-        new = replace(self, fit=fit, amplitude=amplitude, sd=sd, time=time, time_sd=max(time_sd, self.time_sd))
+        data, features, law = data.over(self.inflation), dict(self.terms.features), self
+        if not math.isnan(self.time):
+            of_kind = [each for each in switches(variables, inside=inside) if each.kind == self.fit.switch.kind]
+            gains = _over_times(data, features, self.fit, of_kind)
+            time, time_sd = mean_time([switch.time for switch in of_kind], gains)
+            fit = replace(self.fit, switch=of_kind[int(gains.argmax())])
+            law = replace(self, fit=fit, time=time, time_sd=max(time_sd, self.time_sd))
+        amplitude, sd = _amplitude(data, features, law.fit)
+        new = replace(law, amplitude=amplitude, sd=max(sd, self.sd))
         return new if new.clear else self
 
 

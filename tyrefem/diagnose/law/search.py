@@ -19,6 +19,7 @@ from tyrefem.diagnose.heat.sources import Place, UnknownSource, evidence
 from tyrefem.diagnose.law.evidence import fitted_law, law_data, law_strength, plain_switch
 from tyrefem.diagnose.law.heat_law import PlaceLaw, place_law
 from tyrefem.diagnose.law.places import (
+    FLUX,
     HEAT,
     LOSS,
     LawPlace,
@@ -99,13 +100,18 @@ class HeatLaw(Brief):
         """Whether one law with a clear amplitude describes the heat in all fitted runs."""
         return self.law.clear and (self.lead > -WORSE or self.share >= MOSTLY)
 
-    def dated(self, data: ProjectedData) -> HeatLaw:
-        """The laws with their switches by a linear model about the point where the sources act: ``data``."""
+    def as_it_acts(self, data: ProjectedData) -> HeatLaw:
+        """The laws with switches and amplitudes by a linear model about the point where the sources act: ``data``.
+
+        A share of the model's heat or of a film is not what acts there: without a switch it stays as it is.
+        """
         ranking = []
         for entry in self.ranking:
             place = entry.place
             of_place = law_data(_beside(data, entry.others), entry.columns, place.sd, self.variables.hats)
-            law = entry.law.dated(of_place, self.variables, inside=place.inside)
+            law = entry.law
+            if place.kind in (HEAT, FLUX) or not math.isnan(law.time):
+                law = law.as_it_acts(of_place, self.variables, inside=place.inside)
             ranking.append(replace(entry, law=law))
         return replace(self, ranking=tuple(ranking))
 
