@@ -193,10 +193,12 @@ class ActingHeat(Brief):
 def where_it_acts(residuals: Residuals, evaluations: Evaluations, heat: HeatOverTime) -> ActingHeat | None:
     """The sources estimated about the point where they act, see `repeated`.
 
-    None if no source is clear, if no tyre is possible there, or if an amount that was clear is no longer clear there.
+    None without a clear source that has a time or a course that a study file can state, if no tyre is possible there,
+    or if the amount of such a source is no longer clear there.
     """
     basis = heat.basis
-    if basis is None or not heat.clear:
+    restated = [source for source in heat.clear if source.kind in WRITTEN or math.isfinite(source.time)]
+    if basis is None or not restated:
         return None
     low, high = (np.array([getattr(each, side) for each in basis.nuisance]) for side in ("low", "high"))
 
@@ -214,7 +216,7 @@ def where_it_acts(residuals: Residuals, evaluations: Evaluations, heat: HeatOver
     if acting is first:
         return None
     known = _by_place(acting)
-    unclear = any(not known[source.station, source.where].clear for source in heat.clear)
+    unclear = any(not known[source.station, source.where].clear for source in restated)
     return None if unclear else acting
 
 
