@@ -5,10 +5,12 @@ from __future__ import annotations
 import itertools
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import tyrefem as tf
-from tyrefem.output.file import made_by_this_tool
+from tyrefem.errors import InputError
+from tyrefem.output.file import made_by_this_tool, mark_archive, results_file
 from tyrefem.reports.figures.budget import budget_figure
 from tyrefem.reports.figures.heat_source import heat_source_figure
 from tyrefem.reports.figures.histories import histories_figure
@@ -140,4 +142,35 @@ def test_a_picture_is_written_in_each_form_the_same_every_time(suffix: str, begi
     assert contents[0].startswith(begins)
     file = tmp_path / f"x{suffix}"
     file.write_bytes(contents[0])
+    assert made_by_this_tool(file)
+
+
+#: Files of a person that only speak of this tool.
+FOREIGN = {
+    "notes.html": b"<html><body>My notes on tyrefem runs</body></html>",
+    "figure.svg": b"<svg><text>tyrefem and measured, drawn by me</text></svg>",
+    "mesh.vtk": b"# vtk DataFile Version 3.0\na mesh for tyrefem\nASCII\n",
+    "mesh.msh": b"$Comments\nfor tyrefem\n$EndComments\n",
+    "mesh.vtu": b"<!-- for tyrefem --><VTKFile/>",
+    "page.pdf": b"%PDF /Title (tyrefem)",
+    "numbers.npz": b"tyrefem.npy",
+    "study.toml": b"# a study for tyrefem\n",
+}
+
+
+@pytest.mark.parametrize("name", FOREIGN)
+def test_a_file_of_a_person_that_speaks_of_this_tool_is_kept(name: str, tmp_path: Path) -> None:
+    file = tmp_path / name
+    file.write_bytes(FOREIGN[name])
+    assert not made_by_this_tool(file)
+    with pytest.raises(InputError, match="replace it with --force"), results_file(file, (file.suffix,)):
+        raise AssertionError("it was opened")
+    assert file.read_bytes() == FOREIGN[name]
+
+
+def test_an_archive_is_known_by_its_comment(tmp_path: Path) -> None:
+    file = tmp_path / "tyre.npz"
+    np.savez(file, tyrefem=np.arange(3))
+    assert not made_by_this_tool(file)
+    mark_archive(file)
     assert made_by_this_tool(file)

@@ -16,6 +16,18 @@ from tyrefem.output.origin import ResultsOrigin
 PICTURES = (".png", ".pdf", ".svg")
 #: Mark in every single file that is written: in a picture's metadata, or a comment of an archive or a mesh.
 MARK = b"tyrefem"
+#: Suffix -> the mark with what stands about it. The word alone also stands in files that people write.
+MARKS = {
+    ".png": b"Software\0" + MARK,
+    ".pdf": b"/Creator (" + MARK + b")",
+    ".svg": b"<dc:title>" + MARK + b"</dc:title>",
+    ".msh": b"$Comments\n" + MARK + b"\n$EndComments",
+    ".vtu": b"<!-- " + MARK + b" -->",
+    ".vtk": MARK + b", by meshio",
+    ".html": b'<meta name="generator" content="' + MARK + b'">',
+}
+#: Suffixes of zip archives: their comment is the mark.
+ARCHIVES = (".npz", ".fmu")
 #: Number of bytes at a file's start and end that are searched for the mark.
 SEARCHED = 1 << 16
 
@@ -92,11 +104,18 @@ class _FileGuard(WriteGuard):
 
 
 def made_by_this_tool(path: Path) -> bool:
-    """True if the file has this tool's mark."""
+    """True if the file has this tool's mark, in the form of its kind of file."""
+    suffix = path.suffix.lower()
+    if suffix in ARCHIVES:
+        with suppress(OSError, zipfile.BadZipFile), zipfile.ZipFile(path) as archive:
+            return archive.comment == MARK
+    mark = MARKS.get(suffix)
+    if mark is None:
+        return False
     with suppress(OSError), path.open("rb") as stream:
         first = stream.read(SEARCHED)
         stream.seek(max(path.stat().st_size - SEARCHED, 0))
-        return MARK in first or MARK in stream.read()
+        return mark in first or mark in stream.read()
     return False
 
 
