@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -77,8 +77,8 @@ def quoted(words: Iterable[str], allowed: Iterable[str]) -> str:
     "'crwn' (did you mean 'crown'?), 'x9'"
     """
     names = sorted(map(str, allowed))
-    close = {word: difflib.get_close_matches(word, names, n=1, cutoff=0.5) for word in words}
-    return ", ".join(f"'{word}'" + (f" (did you mean '{match[0]}'?)" if match else "") for word, match in close.items())
+    close = {word: _closest(word, names) for word in words}
+    return ", ".join(f"'{word}'" + (f" (did you mean '{match}'?)" if match else "") for word, match in close.items())
 
 
 def nearest(word: str, allowed: Iterable[str]) -> str:
@@ -88,7 +88,15 @@ def nearest(word: str, allowed: Iterable[str]) -> str:
     "; did you mean 'carcass'? Allowed: carcass, tread"
     """
     names = sorted(map(str, allowed))
-    close = difflib.get_close_matches(word, names, n=1, cutoff=0.5)
-    hint = f"; did you mean '{close[0]}'?" if close else ";"
+    close = _closest(str(word), names)
+    hint = f"; did you mean '{close}'?" if close else ";"
     listing = ", ".join(names[:20]) + (", ..." if len(names) > 20 else "")
     return f"{hint} Allowed: {listing}" if close else f"; allowed: {listing}"
+
+
+def _closest(word: str, names: Sequence[str]) -> str | None:
+    """The closest of the names, if any is close; capital letters count only among several."""
+    as_written = difflib.get_close_matches(word, names, n=1, cutoff=0.5)
+    small = {name.casefold(): name for name in reversed(names)}
+    in_small = difflib.get_close_matches(word.casefold(), small, n=1, cutoff=0.5)
+    return as_written[0] if as_written else small[in_small[0]] if in_small else None

@@ -295,7 +295,7 @@ def test_a_keyword_that_is_none_is_refused(drives: Drives) -> None:
 
 
 def test_a_word_that_is_no_choice_is_refused(drives: Drives) -> None:
-    with pytest.raises(tf.InputError, match="reduced must be 'auto' or 'never', not 'always'"):
+    with pytest.raises(tf.InputError, match="reduced: must be 'auto' or 'never', not 'always'"):
         diagnosed(drives, reduced="always")
 
 

@@ -258,9 +258,9 @@ def test_a_strategy_is_any_object_with_a_search() -> None:
 
 
 def test_settings_are_checked_and_frozen() -> None:
-    with pytest.raises(InputError, match="largest must be a number of effects from 1 to 3, not 4"):
+    with pytest.raises(InputError, match="largest: must be a number of effects from 1 to 3, not 4"):
         DiagnosisSettings(largest=4)
-    with pytest.raises(InputError, match="looks must be at least 1"):
+    with pytest.raises(InputError, match="looks: must be a whole number of at least 1"):
         DiagnosisSettings(looks=0)
     with pytest.raises(AttributeError):
         DEFAULT.batch = 1  # type: ignore[misc]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +13,8 @@ import pytest
 import tyrefem as tf
 from tyrefem.api.numbers import check_numbers
 from tyrefem.errors import InputError
+from tyrefem.measured import read_table
+from tyrefem.quantity import registry
 
 pytestmark = pytest.mark.fast
 
@@ -27,7 +30,19 @@ def coarse() -> tf.Study:
         ("press", {"load": "5 kN"}, r"load: must be a number in N, not '5 kN'; did you mean 5000\?"),
         ("press", {"load": math.inf}, "load: must be finite, not inf"),
         ("press", {"pressure": "much"}, "pressure: must be a number in Pa, not 'much'$"),
-        ("press", {"camber": [1.0, 2.0, None]}, "camber: must be a number in rad, not None"),
+        ("press", {"camber": [1.0, 2.0, None]}, r"camber: must be a number in rad, not \[1\.0, 2\.0, None\]"),
+        ("press", {"load": b"x"}, "load: must be a number in N, not b'x'"),
+        ("press", {"load": True}, "load: must be a number in N, not True"),
+        ("press", {"load": 10**400}, "load: must be finite, not inf"),
+        ("press", {"load": []}, r"load: must be a number in N, not \[\]"),
+        ("press", {"pressure": lambda speed: speed}, "pressure: must be a number in Pa, not <function"),
+        (
+            "press",
+            {"load": registry().Quantity(3, "kN")},
+            r"load: must be a number in N, .* did you mean 3000\?",
+        ),
+        ("press", {"motion": 3.5}, r"motion: no motion '3\.5'; allowed: large, linear"),
+        ("roll", {"slip": [0.1, 0.2]}, r"slip: must be a number, not \[0\.1, 0\.2\]; several numbers make a curve"),
         ("press", {"tolerance": math.nan}, "tolerance: must be finite, not nan"),
         ("roll", {"slip_angle": "2 deg"}, r"slip_angle: must be a number in rad, not '2 deg'; did you mean 0\.0349"),
         ("roll", {"torque": math.nan}, "torque: must be finite, not nan"),
@@ -45,6 +60,18 @@ def coarse() -> tf.Study:
         ),
         ("warmed", {"temperatures": {"tread": 50.0}}, "temperatures: every region needs a temperature; missing: "),
         ("warmed", {"temperatures": {"tred": 50.0}}, "no region 'tred'; did you mean 'tread'"),
+        ("with_drive", {"changes": None}, "changes: must be a mapping like {'speed': '25 mph'}, not None"),
+        ("save", {"path": None}, "path: must be a path, as text or Path, not None"),
+        ("save", {"path": ""}, "path: is empty"),
+        ("save", {"path": "/"}, "/: is a folder; a file is wanted"),
+        ("sweep", {"vary": ["drive.speed"]}, "vary: must be a mapping like"),
+        ("explore", {"vary": 3.5}, "vary: must be a mapping like"),
+        ("compare", {"table": 3.5}, "table: a value of type float is no measured table"),
+        ("diagnose", {"largest": "2"}, "largest: must be a number of effects from 1 to 3, not '2'"),
+        ("diagnose", {"looks": "2"}, "looks: must be a whole number of at least 1, not '2'"),
+        ("diagnose", {"settings": {}}, "settings: must be DiagnosisSettings, not {}"),
+        ("diagnose", {"effects": 3}, "effects: must be a path, as text or Path, not 3"),
+        ("diagnose", {"calibration": [1]}, r"calibration: must be a path, as text or Path, not \[1\]"),
         ("at_amplitudes", {"amplitudes": {"tred": 0.1}}, "no region 'tred'; did you mean 'tread'"),
         ("replace", {"changes": None}, "changes must be a table like"),
     ],
@@ -56,7 +83,44 @@ def test_an_argument_that_cannot_be(coarse: tf.Study, method: str, options: dict
 
 def test_numbers_of_every_kind_pass() -> None:
     check_numbers(load=np.float64(4e3), drum_diameter=math.inf, slips=np.array([0.1]), friction=lambda speed, _: speed)
-    check_numbers(slip_angle=(0.1, np.int64(0)), pressure=None, cambers=[])
+    check_numbers(slip_angle=(0.1, np.int64(0)), pressure=None, cambers=[], curve=True)
+    check_numbers(load=np.array(4e3), loads=(each for each in (3e3, 4e3)))
+
+
+@pytest.mark.parametrize("value", [None, 3.5, b"x", [], "", "a\0b"])
+def test_what_is_no_path(value: Any) -> None:
+    calls: dict[str, Callable[[Any], object]] = {"folder": tf.load, "path": read_table}
+    for field, call in calls.items():
+        with pytest.raises(InputError) as error:
+            call(value)
+        assert error.value.field == field
+
+
+def test_numbers_of_a_size_and_the_offset_of_a_table(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="numbers: must be a mapping like"):
+        tf.section_from_size("205/60R15", 3.5)  # type: ignore[arg-type]
+    file = tmp_path / "run.csv"
+    file.write_text("time [s],crown [degC]\n0,25\n")
+    for offset in ("60 s", None, [60.0], math.nan):
+        with pytest.raises(InputError, match="time_offset"):
+            read_table(file, time_offset=offset)  # type: ignore[arg-type]
+
+
+def test_times_points_and_pictures_of_a_result(coarse: tf.Study) -> None:
+    result = coarse.run()
+    for time in ("2 s", [1.0], b"1"):
+        with pytest.raises(InputError, match="time: must be a number of seconds, not"):
+            result.field(time)  # type: ignore[arg-type]
+    for points in ("nope", {}, ["x", 1], 10**400):
+        with pytest.raises(InputError, match=r"points: wanted finite pairs of coordinates, \(n, 2\); not"):
+            result.near(points)  # type: ignore[arg-type]
+    for picture in (None, 3.5, ["heat"]):
+        with pytest.raises(InputError, match="picture: no picture"):
+            result.plot(picture=picture)  # type: ignore[call-overload]
+    for path in (None, 3.5, b"x", ""):
+        for write in (result.save, result.to_vtk, result.report):
+            with pytest.raises(InputError, match="path"):
+                write(path)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("changes", [5, {5: "x"}, ["drive.speed"]])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from tyrefem.output import as_path
 from tyrefem.realtime import box_model
 
 
@@ -28,5 +29,5 @@ class Exploration(box_model.BoxModel):
         from tyrefem.inputs.origin import StudyOrigin
         from tyrefem.reports.explore import write_page
 
-        with saving_file(path, (".html",), StudyOrigin.beside(self.study, Path(path)), force=force) as place:
+        with saving_file(path, (".html",), StudyOrigin.beside(self.study, as_path(path, "path")), force=force) as place:
             return write_page(self, place)

@@ -12,7 +12,7 @@ from tyrefem.api.studies import Study
 from tyrefem.api.verbs import with_verbs
 from tyrefem.errors import InputError, nearest
 from tyrefem.inputs.origin import STUDY
-from tyrefem.output import SUMMARY
+from tyrefem.output import SUMMARY, as_path
 from tyrefem.output.folder import COMMAND, COMPLETE
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ def load(folder: str | Path) -> Result | Comparison | DiagnosisRecord | Record:
     """
     from tyrefem.simulation.stored_result import FILE, read_result
 
-    place = Path(folder).expanduser()
+    place = as_path(folder, "folder").expanduser()
     if place.is_file() and place.name == FILE:
         place = place.parent
     if not place.is_dir():

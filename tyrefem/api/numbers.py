@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from typing import Any
 
@@ -22,31 +22,49 @@ LISTS = {"loads": "N", "slip_angles": "rad", "slips": "1", "cambers": "rad"}
 ENDLESS = ("drum_diameter",)
 
 
-def check_numbers(**values: Any) -> None:
-    """Raise `InputError` for a value that is no finite number, with what was probably meant; None and functions pass.
+#: Numbers that may be functions of the state, and numbers of which a curve takes several.
+FUNCTIONS, SEVERAL = ("friction",), ("slip_angle", "slip")
+
+
+def check_numbers(*, curve: bool = False, **values: Any) -> None:
+    """Raise `InputError` for a value that is no finite number, with what was probably meant; None passes.
+
+    ``curve``: a slip angle or a slip may be a list of numbers.
 
     >>> check_numbers(load=4e3, pressure=None, loads=[3e3, 4e3])
     """
     for name, value in values.items():
-        if value is None or callable(value):
+        if value is None or (name in FUNCTIONS and callable(value)):
             continue
-        if name in LISTS and (isinstance(value, str) or not isinstance(value, Iterable)):
+        if name in LISTS and not _is_list(value):
             raise InputError(f"must be a list of numbers in {LISTS[name]}, not {value!r:.60}", field=name)
-        several = isinstance(value, Iterable) and not isinstance(value, str)
+        several = _is_list(value) and (name in LISTS or (curve and name in SEVERAL))
         for each in value if several else (value,):
             _check(name, LISTS.get(name) or UNITS[name], each)
 
 
-def _check(name: str, unit: str, value: object) -> None:
+def _is_list(value: object) -> bool:
+    """Whether a value is a sequence of numbers: an array of no dimension, a mapping or a quantity of pint is none."""
+    if isinstance(value, str | bytes | Mapping) or hasattr(value, "magnitude"):
+        return False
+    return isinstance(value, Iterable) and getattr(value, "ndim", 1) == 1
+
+
+def _check(name: str, unit: str, value: Any) -> None:
     wanted = "a number" if unit == "1" else f"a number in {unit}"
-    if isinstance(value, str):
+    if isinstance(value, str) or hasattr(value, "magnitude"):
         meant = ""
         with suppress(InputError):
-            meant = f"; did you mean {parse(value, unit):g}?"
-        raise InputError(f"must be {wanted}, not '{value:.60}'{meant}", field=name)
+            meant = f"; did you mean {parse(str(value), unit):g}?"
+        raise InputError(f"must be {wanted}, not '{value!s:.60}'{meant}", field=name)
     try:
-        number = float(value)  # type: ignore[arg-type]
+        if isinstance(value, bool | bytes) or getattr(value, "ndim", 0) or str(value) in ("True", "False"):
+            raise TypeError
+        number = float(value)
     except (TypeError, ValueError):
-        raise InputError(f"must be {wanted}, not {value!r:.60}", field=name) from None
+        more = "; several numbers make a curve: slip_curve" if name in SEVERAL and _is_list(value) else ""
+        raise InputError(f"must be {wanted}, not {value!r:.60}{more}", field=name) from None
+    except OverflowError:
+        number = math.inf
     if math.isnan(number) or (math.isinf(number) and name not in ENDLESS):
         raise InputError(f"must be finite, not {number:g}", field=name)

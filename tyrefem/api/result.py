@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, overload
 
 from tyrefem.api.field import SectionField
 from tyrefem.api.verbs import shown, with_verbs
+from tyrefem.output import as_path
 from tyrefem.simulation import result
 from tyrefem.sweep import campaign
 
@@ -76,7 +77,7 @@ class Result(result.ResultData):
         if folder is not None:
             from tyrefem.reports.figures import write_pictures
 
-            return write_pictures(self, Path(folder))
+            return write_pictures(self, as_path(folder, "folder"))
         from tyrefem.reports.figures.on_axes import draw
 
         return draw(self, picture, time, axes)
@@ -101,13 +102,13 @@ class Result(result.ResultData):
         which shows them in ParaView; return the .pvd. ``revolved``: also ``<name>-revolved.pvd``, the whole ring."""
         from tyrefem.reports.vtk import write_series
 
-        return write_series(self, Path(folder), revolved=revolved)
+        return write_series(self, as_path(folder, "folder"), revolved=revolved)
 
     def report(self, path: str | Path) -> Path:
         """Write one self-contained HTML report; return its path."""
         from tyrefem.reports.run import write_report
 
-        return write_report(self, Path(path))
+        return write_report(self, as_path(path, "path"))
 
     def save(self, folder: str | Path, *, parquet: bool = False, force: bool = False) -> Path:
         """Write readings, extremes and heat budget as CSV, ``study.toml``, ``result.npz`` for `tyrefem.load`, and

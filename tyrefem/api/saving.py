@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tyrefem.errors import InputError
+from tyrefem.output import as_path
 from tyrefem.output.file import results_file
 from tyrefem.output.folder import results_folder
 
@@ -25,6 +26,7 @@ def saving(
     ------
     InputError : the folder cannot be written; files in it are not of this command.
     """
+    folder = as_path(folder, "folder")
     with _words_of_python(), results_folder(folder, command, files, origin=origin, force=force, renews=True) as place:
         yield place
 
@@ -37,6 +39,7 @@ def saving_file(path: str | Path, suffixes: Sequence[str], origin: StudyOrigin, 
     ------
     InputError : the file cannot be written, or was not made by this tool.
     """
+    path = as_path(path, "path")
     with _words_of_python(), results_file(path, suffixes, origin=origin, force=force, renews=True) as place:
         yield place
 

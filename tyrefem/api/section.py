@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+from tyrefem.errors import InputError
+
 if TYPE_CHECKING:
     from tyrefem.geometry import Section
 
@@ -28,4 +30,6 @@ def section_from_size(size: str, numbers: Mapping[str, Any] | None = None) -> Se
     """
     from tyrefem.geometry import load
 
+    if not isinstance(numbers, Mapping | None):
+        raise InputError(f"must be a mapping like {{'rim_width': '6 in'}}, not {numbers!r:.60}", field="numbers")
     return load({"size": size, "parameters": dict(numbers or {})})

@@ -156,7 +156,7 @@ class StudyMechanics(studies.StudyData):
         check_numbers(
             slip_angle=slip_angle, slip=slip, torque=torque, axle_force=axle_force, turn_slip=turn_slip,
             tolerance=tolerance, camber=camber, friction=friction, speed=speed, load=load, deflection=deflection,
-            **wheel,
+            curve=True, **wheel,
         )  # fmt: skip
         data = slip_curve(
             self, slip_angle=slip_angle, slip=slip, torque=torque, axle_force=axle_force, turn_slip=turn_slip,

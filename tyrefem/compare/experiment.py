@@ -343,5 +343,6 @@ def _path(table: str | Path) -> Path:
 def _no_table(table: object) -> InputError:
     return InputError(
         f"a value of type {type(table).__name__} is no measured table; allowed: a CSV file's path, a pandas DataFrame "
-        "with 'time [s]' and sensors like 'crown [degC]', a MeasuredRun, or a list of these"
+        "with 'time [s]' and sensors like 'crown [degC]', a MeasuredRun, or a list of these",
+        field="table",
     )

@@ -167,8 +167,8 @@ class _Work:
 
     def check(self) -> None:
         """Raises InputError for another word than "auto" or "never"."""
-        if self.reduced not in ("auto", "never"):
-            raise InputError(f"reduced must be 'auto' or 'never', not {self.reduced!r}")
+        if not isinstance(self.reduced, str) or self.reduced not in ("auto", "never"):
+            raise InputError(f"must be 'auto' or 'never', not {self.reduced!r:.60}", field="reduced")
 
     def done(self, total: int) -> Callable[[int], object]:
         """Function to be called with the number of finished simulations."""

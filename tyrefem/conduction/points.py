@@ -19,7 +19,10 @@ _SNAP = 1e-9
 
 def as_points(points: ArrayLike) -> Array:
     """Points as an array (n, 2); a single pair is one point."""
-    array = np.asarray(points, dtype=float)
+    try:
+        array = np.asarray(points, dtype=float)
+    except (TypeError, ValueError, OverflowError):
+        raise InputError(f"wanted finite pairs of coordinates, (n, 2); not {points!r:.60}", field="points") from None
     if array.ndim == 1 and array.size == 2:
         array = array[None]
     if array.ndim != 2 or array.shape[1] != 2 or not np.isfinite(array).all():

@@ -19,7 +19,9 @@ from tyrefem.diagnose.forward.worker_queues import Workers
 from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
 from tyrefem.diagnose.unknowns.candidates import CandidateSpace, catalogue_candidates
 from tyrefem.effects import use_effects
+from tyrefem.errors import InputError
 from tyrefem.measured.names import ColumnNames
+from tyrefem.output import as_path
 
 #: Name on the command line -> strategy.
 STRATEGIES: Mapping[str, Strategy] = {"forward": ForwardSelection(), "exhaustive": Exhaustive()}
@@ -112,8 +114,11 @@ def grouped(options: Mapping[str, Any]) -> tuple[ColumnNames, Method, Simulation
         use_effects(folder)
     columns = ColumnNames.of(ignore=given.pop("ignore", ()), rename=given.pop("rename", None))
     settings = given.pop("settings", DiagnosisSettings())
+    if not isinstance(settings, DiagnosisSettings):
+        raise InputError(f"must be DiagnosisSettings, not {settings!r:.60}", field="settings")
     settings = replace(settings, **{name: given.pop(name) for name in ("largest", "looks", "reduced") if name in given})
     parts = {name: given.pop(name) for name in ("candidates", "criterion", "strategy") if name in given}
     calibration = given.pop("calibration", None)
-    method = Method(**parts, settings=settings, calibration=None if calibration is None else Path(calibration))
+    table = None if calibration is None else as_path(calibration, "calibration")
+    method = Method(**parts, settings=settings, calibration=table)
     return columns, method, SimulationWork(**given)

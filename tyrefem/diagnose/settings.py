@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from numbers import Integral
 
 from tyrefem.errors import InputError
 
@@ -216,16 +217,17 @@ class DiagnosisSettings:
         return (*mesh, *fields, self.reduced_time_tolerance, self.batch_size)
 
     def __post_init__(self) -> None:
-        if self.reduced not in ("auto", "never"):
-            raise InputError(f"reduced must be 'auto' or 'never', not {self.reduced!r}")
-        if not 1 <= self.largest <= len(self.size_shares):
+        if not isinstance(self.reduced, str) or self.reduced not in ("auto", "never"):
+            raise InputError(f"must be 'auto' or 'never', not {self.reduced!r:.60}", field="reduced")
+        if not isinstance(self.largest, Integral) or not 1 <= self.largest <= len(self.size_shares):
             raise InputError(
-                f"largest must be a number of effects from 1 to {len(self.size_shares)}, not {self.largest!r}"
+                f"must be a number of effects from 1 to {len(self.size_shares)}, not {self.largest!r:.60}",
+                field="largest",
             )
         if not 0 <= self.odd_run_share < 1:
             raise InputError(f"odd_run_share must be at least 0 and less than 1, not {self.odd_run_share!r}")
-        if self.looks < 1:
-            raise InputError(f"looks must be at least 1, not {self.looks!r}")
+        if not isinstance(self.looks, Integral) or self.looks < 1:
+            raise InputError(f"must be a whole number of at least 1, not {self.looks!r:.60}", field="looks")
 
 
 #: Default settings.

@@ -24,6 +24,7 @@ from tyrefem.effects.effect import Effect, Parameter, Prior, complaint
 from tyrefem.effects.shapes import with_checked_shapes
 from tyrefem.effects.state import EffectState
 from tyrefem.errors import InputError, PluginWarning, nearest
+from tyrefem.output import as_path
 from tyrefem.plugins import Kind, Origin, Registry, registry, use
 from tyrefem.plugins.environment import FOLDERS
 
@@ -72,9 +73,9 @@ def use_effects(folder: str | Path) -> tuple[str, ...]:
     ------
     InputError : there is no such folder, it has no effect, or a file of it cannot be loaded.
     """
-    place = Path(folder).resolve()
+    place = as_path(folder, "effects").resolve()
     if not place.is_dir():
-        raise InputError(f"effects: '{folder}' is not a folder")
+        raise InputError(f"'{folder}' is not a folder", field="effects")
     before = os.environ.get(FOLDERS, "")
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", PluginWarning)  # a failure in this folder is raised below
@@ -87,7 +88,7 @@ def use_effects(folder: str | Path) -> tuple[str, ...]:
         if failure is not None:
             raise failure.error
         files = "no Python file" if not list(place.glob("*.py")) else "Python files, but none with an effect"
-        raise InputError(f"effects: '{folder}' has {files}; docs/effects.md, \"An effect of your own\"")
+        raise InputError(f"'{folder}' has {files}; docs/effects.md, \"An effect of your own\"", field="effects")
     return tuple(sorted(inside))
 
 

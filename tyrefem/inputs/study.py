@@ -16,7 +16,7 @@ from tyrefem.inputs.study_contents import StudyContents
 from tyrefem.inputs.study_file import write_study
 from tyrefem.inputs.uncertain_numbers import uncertain_number
 from tyrefem.measured.cases import Case, read_cases
-from tyrefem.output import note_input
+from tyrefem.output import as_path, note_input
 
 if TYPE_CHECKING:
     from tyrefem.geometry.meshing import TyreMesh
@@ -116,6 +116,8 @@ class StudyData(StudyContents):
 
     def with_drive(self, changes: Mapping[str, Any]) -> Self:
         """A new study with other values in its ``[drive]`` table."""
+        if not isinstance(changes, Mapping):
+            raise InputError(f"must be a mapping like {{'speed': '25 mph'}}, not {changes!r:.60}", field="changes")
         return self.replace({f"drive.{key}": value for key, value in changes.items()})
 
     def at_run(self, run: str, drive: Mapping[str, Any] | None = None) -> Self:
@@ -127,7 +129,7 @@ class StudyData(StudyContents):
 
         Relative paths of files become absolute if the new file is in another folder.
         """
-        return write_study(self.data, self.folder, Path(path))
+        return write_study(self.data, self.folder, as_path(path, "path"))
 
     # -- work --------------------------------------------------------------------------------------------------------
 

@@ -31,7 +31,7 @@ class ColumnNames:
         ColumnNames(rename={'T1': 'crown'}, ignore=('room',))
         """
         columns = (ignore,) if isinstance(ignore, str) else ignore
-        columns = tuple(columns) if isinstance(columns, Iterable) else (columns,)
+        columns = tuple(columns) if isinstance(columns, Iterable) and not hasattr(columns, "magnitude") else (columns,)
         if not all(isinstance(name, str) for name in columns):
             raise InputError(f"must be a column's name, or a list of them, not {ignore!r:.60}", field="ignore")
         names = {} if rename is None else rename

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from numbers import Real
 from pathlib import Path
 
 import numpy as np
@@ -26,6 +28,7 @@ from tyrefem.measured.lines import Lines, split
 from tyrefem.measured.names import ColumnNames, missing_columns_error
 from tyrefem.measured.run import MeasuredRun
 from tyrefem.measured.timestamps import are_timestamps, microseconds
+from tyrefem.output import as_path
 
 #: s; 30 years. A larger time is a calendar time and needs ``time_offset``.
 LONGEST_TIME = 1e9
@@ -125,7 +128,7 @@ class TableLines:
         import pandas as pd
 
         lines, file = self.lines, self.file
-        if not np.isfinite(time_offset):
+        if not isinstance(time_offset, Real) or not math.isfinite(time_offset):
             raise InputError(f"{time_offset!r} is not a finite number of seconds", field="time_offset", file=file)
         columns = _columns(lines, dict(rename or {}), frozenset(ignore), file)
         if not lines.rows:
@@ -150,7 +153,7 @@ class TableLines:
 
 def table_lines(path: str | Path) -> TableLines:
     """The rows of a file."""
-    file = Path(path)
+    file = as_path(path, "path")
     return TableLines(split(file), file, file.stem)
 
 

@@ -149,6 +149,25 @@ def end_writing(path: Path) -> None:
     _guard.after_writing(path)
 
 
+def as_path(path: str | Path, field: str) -> Path:
+    """The path that a caller from Python gives as the argument ``field``.
+
+    Raises
+    ------
+    InputError : neither text nor path, empty, or with a zero character.
+
+    >>> as_path("out", "folder").name
+    'out'
+    """
+    if not isinstance(path, str | os.PathLike) or isinstance(os.fspath(path), bytes):
+        raise InputError(f"must be a path, as text or Path, not {path!r:.60}", field=field)
+    if not os.fspath(path):
+        raise InputError("is empty; give a path, '.' for this folder", field=field)
+    if "\0" in os.fspath(path):
+        raise InputError(f"a path has no zero character: {os.fspath(path)!r:.60}", field=field)
+    return Path(path)
+
+
 def place_of_output(path: str | Path) -> Path:
     """The absolute path of a folder for results.
 
@@ -209,6 +228,8 @@ def atomic_path(path: str | Path) -> Iterator[Path]:
     ('{}', ['summary.json'])
     """
     path = Path(os.path.abspath(path))
+    if not path.name:
+        raise InputError("is a folder; a file is wanted", file=path)
     temporary = _temporary(path)
     with _cannot_be_written(path, temporary):
         _guard.before_writing(path)

@@ -121,6 +121,9 @@ def explored(
     """
     NEEDS.check(study)
     choice = study.card.explore
+    if not isinstance(vary, Mapping | None):
+        example = "{'drive.speed': ('10 mph', '40 mph')}"
+        raise InputError(f"must be a mapping like {example}, not {vary!r:.60}", field="vary")
     ranges = vary or choice.vary or default_box(study)
     try:
         refuse_levels(ranges)

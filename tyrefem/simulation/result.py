@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from numbers import Real
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -141,8 +142,10 @@ class ResultData(Brief):
         if time is None:
             return len(self.times) - 1
         first, last = float(self.times[0]), float(self.times[-1])
+        if not isinstance(time, Real):
+            raise InputError(f"must be a number of seconds, not {time!r:.60}", field="time")
         if not first - 1e-9 <= time <= last * (1 + 1e-9):
-            raise InputError(f"the run has times from {first:g} to {last:g} s, not {time:g} s", field="time")
+            raise InputError(f"the run has times from {first:g} to {last:g} s, not {float(time):g} s", field="time")
         return int(np.argmin(np.abs(self.times - time)))
 
     def temperature_field(self, i: int = -1) -> Callable[[Array], Array]:

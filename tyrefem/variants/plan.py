@@ -267,6 +267,9 @@ def card_of(study: StudyData, vary: Mapping[str, Any] | None = None, **options: 
     options : other keys of a sweep file; None: not given.
     """
     data = {key: value for key, value in options.items() if value is not None}
+    if not isinstance(vary, Mapping | None):
+        example = "{'drive.speed': ('10 mph', '40 mph')}"
+        raise InputError(f"must be a mapping like {example}, not {vary!r:.60}", field="vary")
     if vary:
         data["vary"] = {key: _vary(value) for key, value in vary.items()}
     if "cases" in data:

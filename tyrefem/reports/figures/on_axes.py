@@ -38,7 +38,7 @@ def draw(result: ResultData, picture: str, time: float | None = None, axes: Axes
     ------
     InputError : no such picture; a time outside the run.
     """
-    if picture not in PICTURES:
+    if picture not in list(PICTURES):
         raise InputError(f"no picture '{picture}'{nearest(picture, PICTURES)}", field="picture")
     i = result.reading_at(time)
     if axes is None:
