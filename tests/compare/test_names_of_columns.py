@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from toy_study import Entry, Study, measured_from
 
+from tyrefem.cli.common import renamed
 from tyrefem.compare import compare
 from tyrefem.diagnose.options import grouped
 from tyrefem.errors import InputError
@@ -131,3 +132,9 @@ def test_names_of_another_form_are_refused(
     file = logged(study).write(tmp_path / "run-1.csv")
     with pytest.raises(InputError, match=re.escape(words)):
         FUNCTIONS[function](study, file, **names)
+
+
+def test_a_column_has_one_name_on_the_command_line() -> None:
+    assert renamed(["T1=crown", "T1=crown", "T2=bead"]) == {"T1": "crown", "T2": "bead"}
+    with pytest.raises(InputError, match="--rename: column 'T1' has two names, 'crown' and 'bead'"):
+        renamed(["T1=crown", "T1=bead"])

@@ -108,3 +108,34 @@ def test_a_mark_before_text_that_is_not_utf_8(tmp_path: Path) -> None:
     path = tmp_path / "table.csv"
     path.write_bytes(b"\xef\xbb\xbftime [s],crown [\xb0C]\n0,25\n")
     assert read_table(path)[0].sensors == ("crown",)
+
+
+def test_a_row_of_units_is_named(tmp_path: Path) -> None:
+    for first in ("s,degC", "[s],[°C]", "(min),(K)"):
+        file = tmp_path / "logger.csv"
+        file.write_text(f"time,crown\n{first}\n0,25\n", encoding="utf-8")
+        with pytest.raises(InputError, match=r"line 1: 'time' has its unit, .*, in a row of its own"):
+            read_table(file)
+
+
+@pytest.mark.parametrize("stamp", ["2024-05-01 24:00:00", "2024-05-01 12:30:00 UTC", "2024-02-30 12:00"])
+def test_a_first_timestamp_that_cannot_be(tmp_path: Path, stamp: str) -> None:
+    file = tmp_path / "logger.csv"
+    file.write_text(f"time,crown [degC]\n{stamp},25\n")
+    with pytest.raises(InputError, match=r"line 2, column 'time': .* or 2024-05-01T12:30:01"):
+        read_table(file)
+
+
+def test_a_cell_with_a_line_break_is_named(tmp_path: Path) -> None:
+    file = tmp_path / "logger.csv"
+    file.write_text('time [s],"crown\n[degC]"\n0,25\n')
+    with pytest.raises(InputError, match=r"line 1: quotes do not match .*; a cell must end in its line"):
+        read_table(file)
+
+
+def test_a_missing_table_names_the_nearest_beside_it(tmp_path: Path) -> None:
+    (tmp_path / "run-1.csv").write_text("time [s],crown [degC]\n0,25\n")
+    with pytest.raises(InputError, match=r"rum-1\.csv: cannot be read: .*; did you mean 'run-1\.csv'\?"):
+        read_table(tmp_path / "rum-1.csv")
+    with pytest.raises(InputError, match=r"cannot be read: .*directory$"):
+        read_table(tmp_path / "nowhere" / "rum-1.csv")

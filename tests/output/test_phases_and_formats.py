@@ -18,6 +18,7 @@ from tyrefem.reports.figures.phases import LINE, named
 from tyrefem.reports.figures.road import sliding_figure
 from tyrefem.reports.figures.style import add_axes, figure, picture, title
 from tyrefem.reports.figures.temperature import temperature_figure
+from tyrefem.reports.words import history_files
 
 pytestmark = pytest.mark.fast
 
@@ -174,3 +175,9 @@ def test_an_archive_is_known_by_its_comment(tmp_path: Path) -> None:
     assert not made_by_this_tool(file)
     mark_archive(file)
     assert made_by_this_tool(file)
+
+
+def test_names_of_pictures_fit_a_file_system() -> None:
+    files = history_files(["x" * 300, "x" * 300, "\N{GREEK SMALL LETTER OMEGA}" * 300, "A", "a"])
+    assert all(len(file.encode()) <= 255 for file in files)
+    assert len({file.casefold() for file in files}) == len(files)

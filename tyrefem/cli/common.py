@@ -79,7 +79,10 @@ def renamed(pairs: list[str] | None) -> dict[str, str]:
         column, equals, sensor = pair.rpartition("=")
         if not equals or not column.strip() or not sensor.strip():
             raise InputError(f"'{pair}' is not COLUMN=SENSOR, e.g. T1=crown-inner", field="--rename")
-        sensors[column.strip()] = sensor.strip()
+        given = sensors.setdefault(column.strip(), sensor.strip())
+        if given != sensor.strip():
+            message = f"column '{column.strip()}' has two names, '{given}' and '{sensor.strip()}'; give one of them"
+            raise InputError(message, field="--rename")
     return sensors
 
 

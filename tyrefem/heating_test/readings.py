@@ -94,7 +94,8 @@ def read(card: RigCard, tables: Iterable[str | Path], without: Sequence[str] = (
                 words = f"run '{run.name}' is not in the rig's card{nearest(run.name, card.runs)}"
                 raise InputError(words, file=table)
             if run.name in heating_tests:
-                raise InputError(f"run '{run.name}' is given twice", file=table)
+                first = next(file for file in tables if run.name in {each.name for each in read_table(file)})
+                raise InputError(f"run '{run.name}' is given twice; it also stands in {first}", file=table)
             heating_tests[run.name] = matched(card, run, wanted, set(without))
     if not heating_tests:
         raise InputError("no table of a test is given")

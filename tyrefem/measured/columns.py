@@ -111,6 +111,11 @@ def time_unit(text: str, first: str = "") -> str:
     InputError : no unit, or one that is not a time.
     """
     unit = parts(text)[1]
+    if not unit and first.strip("[](){} ").lower() in _SPELLINGS:
+        raise InputError(
+            f"'{text}' has its unit, {first[:20]!r}, in a row of its own; write every unit behind its name, like "
+            "'time [s]' and 'crown [degC]', and remove that row"
+        )
     if not unit and first and _NUMBER.fullmatch(first) is None:
         raise InputError(
             f"'{text}' begins with {first[:40]!r}, which is no timestamp like 2024-05-01T12:30:01 (date and time in "

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import codecs
 import csv
+import os
 import re
 import unicodedata
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from tyrefem.errors import InputError
+from tyrefem.errors import InputError, nearest
 from tyrefem.estimates.work import TEXT, check_memory
 from tyrefem.measured.columns import is_time, parts
 from tyrefem.output import note_input
@@ -51,7 +53,8 @@ def decode(path: Path) -> str:
     except (OSError, ValueError) as error:
         if isinstance(error, InputError):
             raise error.within(file=path) from None
-        raise InputError(f"cannot be read: {getattr(error, 'strerror', None) or error}", file=path) from None
+        reason = f"cannot be read: {getattr(error, 'strerror', None) or error}{_beside(path)}"
+        raise InputError(reason, file=path) from None
     if data.startswith((b"PK\x03\x04", b"\xd0\xcf\x11\xe0")):
         raise InputError("is a spreadsheet or archive, not text: save the sheet as CSV", file=path)
     try:
@@ -66,6 +69,15 @@ def decode(path: Path) -> str:
     if not text.strip():
         raise InputError("is empty", file=path)
     return unicodedata.normalize("NFC", text)
+
+
+def _beside(path: Path) -> str:
+    """The nearest of the tables in the folder of a missing file, as a hint; empty without any."""
+    names = []
+    with suppress(OSError, ValueError):
+        if not os.path.lexists(path):
+            names = [file.name for file in path.parent.glob(f"*{path.suffix or '.csv'}") if file.is_file()]
+    return nearest(path.name, names) if names else ""
 
 
 def split(path: Path) -> Lines:
@@ -140,7 +152,8 @@ def _cells(line: str, delimiter: str, number: int, path: Path, *, strict: bool =
     try:
         cells = next(csv.reader([line], delimiter=delimiter, skipinitialspace=True, strict=strict), [])
     except csv.Error as error:
-        raise InputError(f"line {number}: quotes do not match ({error})", file=path) from None
+        message = f"line {number}: quotes do not match ({error}); a cell must end in its line"
+        raise InputError(message, file=path) from None
     return [cell.strip() for cell in cells]
 
 

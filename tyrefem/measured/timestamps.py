@@ -37,7 +37,8 @@ def microseconds(cells: Sequence[str], lines: Sequence[int], column: str, file: 
         try:
             times.append(datetime.fromisoformat(cell))
         except ValueError:
-            words = f"{cell[:40]!r} is not a timestamp like 2024-05-01T12:30:01, but the first time is"
+            words = f"{cell[:40]!r} is not a timestamp like 2024-05-01T12:30:01"
+            words += ", but the first time is" if times else " or 2024-05-01T12:30:01+02:00; the date must exist"
             raise InputError(f"{where}: {words}", file=file) from None
         if (times[-1].tzinfo is None) != (times[0].tzinfo is None):
             words = "one timestamp has an offset from UTC and another has none"

@@ -88,18 +88,18 @@ def _parse(value: object, unit: str) -> float:
     wanted = f"a quantity like {_EXAMPLES[unit]}" if unit in _EXAMPLES else f"a quantity in {unit}"
     magnitude, text = _split(value, wanted)
     if not math.isfinite(magnitude):
-        raise InputError(f"{value!r} is not a finite number; expected {wanted}")
+        raise InputError(f"{value!r:.80} is not a finite number; expected {wanted}")
     if not text:
         if unit != "1":
-            raise InputError(f"{value!r} has no unit; expected {wanted}")
+            raise InputError(f"{value!r:.80} has no unit; expected {wanted}")
         return magnitude
     usual = _usual(magnitude, text, unit)
     result = _convert(magnitude, text, unit, value, wanted) if usual is None else usual
     if not math.isfinite(result):
-        raise InputError(f"{value!r} is too large to be a number; expected {wanted}")
+        raise InputError(f"{value!r:.80} is too large to be a number; expected {wanted}")
     if unit == "degC":
         if result < -KELVIN - 1e-9:
-            raise InputError(f"{value!r} is below absolute zero")
+            raise InputError(f"{value!r:.80} is below absolute zero")
         return round(result, 10)
     return result
 
@@ -127,7 +127,7 @@ def _usual(magnitude: float, text: str, unit: str) -> float | None:
 
 def _split(value: object, wanted: str) -> tuple[float, str]:
     if isinstance(value, bool) or value is None:
-        raise InputError(f"{value!r} is not {wanted}")
+        raise InputError(f"{value!r:.80} is not {wanted}")
     if isinstance(value, int | float):
         try:
             return float(value), ""
@@ -137,7 +137,7 @@ def _split(value: object, wanted: str) -> tuple[float, str]:
         return float(value.magnitude), str(value.units)
     amount = amount_parts(value)
     if amount is None:
-        raise InputError(f"{value!r} is not {wanted}")
+        raise InputError(f"{value!r:.80} is not {wanted}")
     return float(amount[0]), amount[1]
 
 
@@ -184,24 +184,24 @@ def _convert(magnitude: float, text: str, unit: str, value: object, wanted: str)
     if len(text) > 60:
         raise InputError(f"{text[:60]!r}... is not a unit; expected {wanted}")
     if re.match(r",\d", text):
-        raise InputError(f"{value!r} has a comma; numbers have a decimal point; expected {wanted}")
+        raise InputError(f"{value!r:.80} has a comma; numbers have a decimal point; expected {wanted}")
     if not _UNIT.fullmatch(text) or re.search(r"\)\s*(?:\*\*|\^)", text):
-        raise InputError(f"'{text}' in {value!r} is not a unit; expected {wanted}")
+        raise InputError(f"'{text}' in {value!r:.80} is not a unit; expected {wanted}")
     try:
         given = _pint_name(text)
     except Exception as error:  # pint raises many kinds for text that is not a unit
-        raise InputError(f"unknown unit '{text}' in {value!r}; expected {wanted}") from error
+        raise InputError(f"unknown unit '{text}' in {value!r:.80}; expected {wanted}") from error
     if unit == "delta_degC" and given in ("degree_Celsius", "degree_Fahrenheit"):
         difference = "delta_degC" if "Celsius" in given else "delta_degF"
         raise InputError(
-            f"{value!r} is a temperature, but a difference of temperatures is wanted: write '{difference}'"
+            f"{value!r:.80} is a temperature, but a difference of temperatures is wanted: write '{difference}'"
         )
     if unit == "degC" and "delta" in given:
-        raise InputError(f"{value!r} is a difference of temperatures, but a temperature is wanted: 'degC'")
+        raise InputError(f"{value!r:.80} is a difference of temperatures, but a temperature is wanted: 'degC'")
     try:
         converted = _converted(magnitude, text, unit)
     except Exception as error:  # dimensionality or offset units: the same advice to the user
-        raise InputError(f"'{text}' is not a unit of this quantity ({value!r}); expected {wanted}") from error
+        raise InputError(f"'{text}' is not a unit of this quantity ({value!r:.80}); expected {wanted}") from error
     _check_angle(given, unit, value, wanted)
     return converted
 
@@ -210,11 +210,11 @@ def _check_angle(given: str, unit: str, value: object, wanted: str) -> None:
     """Refuse what pint takes for the same because an angle has no dimension."""
     angle = _ANGLE.search(given) is not None
     if unit == "Hz" and angle:
-        raise InputError(f"{value!r} is an angle per time, but cycles per time are wanted: 1 Hz is 2 pi rad/s")
+        raise InputError(f"{value!r:.80} is an angle per time, but cycles per time are wanted: 1 Hz is 2 pi rad/s")
     if unit == "1" and angle:
-        raise InputError(f"{value!r} is an angle, but a number is wanted: {wanted}")
+        raise InputError(f"{value!r:.80} is an angle, but a number is wanted: {wanted}")
     if unit == "rad" and not angle:
-        raise InputError(f"{value!r} is a number, but an angle is wanted: {wanted}")
+        raise InputError(f"{value!r:.80} is a number, but an angle is wanted: {wanted}")
 
 
 @functools.lru_cache(maxsize=512)
@@ -274,7 +274,7 @@ class Unit:
             (self.le, self.le is None or number <= self.le, "at most"),
         ):
             if not holds:
-                raise InputError(f"{value!r} is out of range: must be {words} {bound:g}{shown}")
+                raise InputError(f"{value!r:.80} is out of range: must be {words} {bound:g}{shown}")
         return number
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:

@@ -35,19 +35,27 @@ def number(value: float, significant: int = 4) -> str:
     return f"{float(text):,.0f}".replace(",", " ") if size >= 4 else text
 
 
-def history_files(runs: Iterable[object]) -> list[str]:
-    """Names of the pictures of runs, all different: letters, digits, ``_``, ``.`` and ``-`` of the run's name stay.
+#: Bytes of a run's name in the name of a file; file systems allow 255 for the whole.
+LONGEST_NAME = 200
 
-    >>> history_files(["taxi 1", "taxi/1"])
-    ['histories-taxi-1.png', 'histories-taxi-1-2.png']
+
+def history_files(runs: Iterable[object]) -> list[str]:
+    """Names of the pictures of runs: letters, digits, ``_``, ``.`` and ``-`` of the run's name stay.
+
+    All are different, also where small and capital letters are the same, and short enough for a file system.
+
+    >>> history_files(["taxi 1", "taxi/1", "A", "a"])
+    ['histories-taxi-1.png', 'histories-taxi-1-2.png', 'histories-A.png', 'histories-a-2.png']
     """
+    known: set[str] = set()
     files: list[str] = []
     for run in runs:
-        name = re.sub(r"[^\w.-]+", "-", str(run)).strip("-.") or "run"
+        name = re.sub(r"[^\w.-]+", "-", str(run)).strip("-.").encode()[:LONGEST_NAME].decode(errors="ignore") or "run"
         file, again = f"histories-{name}.png", 2
-        while file in files:
+        while file.casefold() in known:
             file, again = f"histories-{name}-{again}.png", again + 1
         files.append(file)
+        known.add(file.casefold())
     return files
 
 
