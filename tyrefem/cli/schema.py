@@ -39,13 +39,14 @@ def schema(
     say(f"{len(made)} schemas in {out}: {names}")
     place, rules = Path(SETTINGS), settings(os.path.relpath(out))
     kept = os.path.lexists(place) and not force and not _written_here(place)
+    if not kept:
+        with atomic_path(place) as temporary:
+            temporary.write_text(rules, encoding="utf-8")
     answer_with({"folder": out, "schemas": [*made], "settings": None if kept else place})
     if kept:
         say(f"{place} is your own and was kept; these lines in it tell the schemas:")
         say(rules.rstrip())
     else:
-        with atomic_path(place) as temporary:
-            temporary.write_text(rules, encoding="utf-8")
         say(f"{place} here: Taplo, and VS Code with the extension 'Even Better TOML', complete and check")
     say(f"a single file says its schema in its first line: {BEGINS}{out.as_posix()}/study.json")
 
