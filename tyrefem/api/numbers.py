@@ -58,7 +58,7 @@ def _check(name: str, unit: str, value: Any) -> None:
             meant = f"; did you mean {parse(str(value), unit):g}?"
         raise InputError(f"must be {wanted}, not '{value!s:.60}'{meant}", field=name)
     try:
-        if isinstance(value, bool | bytes) or getattr(value, "ndim", 0) or str(value) in ("True", "False"):
+        if isinstance(value, bool | bytes) or getattr(value, "ndim", 0) != 0 or str(value) in ("True", "False"):
             raise TypeError
         number = float(value)
     except (TypeError, ValueError):

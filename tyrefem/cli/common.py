@@ -74,7 +74,7 @@ def renamed(pairs: list[str] | None) -> dict[str, str]:
     >>> renamed(["T1=crown-inner"])
     {'T1': 'crown-inner'}
     """
-    sensors = {}
+    sensors: dict[str, str] = {}
     for pair in pairs or []:
         column, equals, sensor = pair.rpartition("=")
         if not equals or not column.strip() or not sensor.strip():
