@@ -10,6 +10,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from scipy.linalg import solve_banded
 
 from tyrefem.diagnose.heat.acting import ActingHeat, ActingSource, about_point, best_point, repeated
 from tyrefem.diagnose.heat.courses import Course, CourseGrid, courses
@@ -38,10 +39,10 @@ OF_MODEL = (0.02, 1.0, 0.6)
 
 def delayed(course: Array, time: float) -> Array:
     """A first-order rise (n_fine,) after a course (n_fine,)."""
-    share, rise = 1 - np.exp(-1.0 / time), np.zeros(len(course))
-    for i in range(1, len(course)):
-        rise[i] = rise[i - 1] + share * ((course[i] + course[i - 1]) / 2 - rise[i - 1])
-    return rise
+    kept = np.exp(-1.0 / time)
+    # rise[i] = kept * rise[i - 1] + (1 - kept) * (course[i] + course[i - 1]) / 2: a matrix of two diagonals.
+    rises = np.append(0.0, (1 - kept) * (course[1:] + course[:-1]) / 2)
+    return np.asarray(solve_banded((1, 0), np.array([[1.0], [-kept]]) * np.ones(len(course)), rises))
 
 
 def readings(x: Array, courses_by_run: list[Array]) -> Array:
