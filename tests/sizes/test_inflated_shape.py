@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import griddata
 from scipy.optimize import least_squares
+from scipy.spatial import cKDTree
 
 from tyrefem.geometry.meshing import build
 from tyrefem.inputs.study import StudyData
@@ -72,9 +73,9 @@ def deviations(
     def away(growth: np.ndarray) -> np.ndarray:
         other = grown(line, *growth)
         r, z, phi = other.at(np.linspace(0.0, other.length, 1500))
-        gap = inflated_line[:, None] - np.stack([r, z], axis=1)
-        nearest = np.hypot(gap[..., 0], gap[..., 1]).argmin(axis=1)
-        close = gap[np.arange(len(nearest)), nearest]
+        line_points = np.stack([r, z], axis=1)
+        nearest = cKDTree(line_points).query(inflated_line)[1]
+        close = inflated_line - line_points[nearest]
         return close[:, 0] * np.sin(phi[nearest]) + close[:, 1] * np.cos(phi[nearest])
 
     start = [float(moved[0, 0]), float(np.nanmax(moved[:, 1])), *([0.0] if presses else [])]
