@@ -7,11 +7,10 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from hidden import HELD_OUT, measure, study
+from hidden import COARSE, COARSE_MESH, FINER_MESH, HELD_OUT, measure, study
 
 import tyrefem as tf
 from tyrefem.diagnose.forward.forward_model import ForwardModel
-from tyrefem.diagnose.settings import DiagnosisSettings
 from tyrefem.diagnose.unknowns.candidates import Candidate, beside_rolling, catalogue_candidates, possible
 from tyrefem.diagnose.unknowns.unknown import of_effect
 from tyrefem.diagnose.words.discrepancy_record import confidence
@@ -22,7 +21,7 @@ from tyrefem.effects.hot_road import HotRoad
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
 
-COARSE = DiagnosisSettings(mesh_size="8 mm", largest=1, looks=2)
+TWICE = replace(COARSE, looks=2)
 SWAP = {"name": "swapped-channels", "sensor": "crown-outer", "other": "sidewall-outer"}
 
 
@@ -33,12 +32,12 @@ def few(looked_at: StudyData) -> tuple[Candidate, ...]:
 
 def written(folder: Path) -> tf.Study:
     """The study with three thermocouples on a coarse mesh, all effects allowed."""
-    return study(folder).replace({"mesh.size": "8 mm", "diagnosis.exclude": []})
+    return study(folder, COARSE_MESH).replace({"diagnosis.exclude": []})
 
 
 def test_swapped_channels_are_identified_and_looked_at_again(tmp_path: Path) -> None:
     owner = written(tmp_path / "study")
-    measure(owner, [SWAP])
+    measure(owner, [SWAP], FINER_MESH)
     tables = list((tmp_path / "study").glob("*.csv"))
 
     def forget(*step: object) -> None:
@@ -46,7 +45,7 @@ def test_swapped_channels_are_identified_and_looked_at_again(tmp_path: Path) -> 
         for table in tables:
             table.unlink(missing_ok=True)
 
-    diagnosis = owner.diagnose(settings=COARSE, candidates=few, progress=forget)
+    diagnosis = owner.diagnose(settings=TWICE, candidates=few, progress=forget)
     assert not any(table.exists() for table in tables)
     assert diagnosis.verdict == "identified"
     assert [member.key for member in diagnosis.best.members] == ["swapped-channels (crown-outer, sidewall-outer)"]
@@ -100,14 +99,14 @@ def test_a_candidate_whose_tyre_cannot_be_simulated_does_not_end_the_diagnosis(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     owner = written(tmp_path / "study")
-    measure(owner, [])
+    measure(owner, [], FINER_MESH)
 
     def refused(*_: object) -> float:
         raise InputError("no such road")
 
     # As the port of an effect does whose law has no value at this drive.
     monkeypatch.setattr(HotRoad, "sink_addend", refused)
-    diagnosis = owner.diagnose(settings=replace(COARSE, looks=1), candidates=few, rerun=False)
+    diagnosis = owner.diagnose(settings=COARSE, candidates=few, rerun=False)
     assert diagnosis.verdict == "no gap"
     assert {candidate.name for candidate in diagnosis.candidates} == {"swapped-channels"}
     assert diagnosis.notes == ("hot-road was left out, because no tyre with it could be simulated",)
@@ -119,22 +118,22 @@ def test_a_candidate_whose_tyre_cannot_be_simulated_does_not_end_the_diagnosis(
 
 def test_a_base_number_without_a_tyre_is_still_an_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     owner = written(tmp_path / "study")
-    measure(owner, [])
+    measure(owner, [], FINER_MESH)
 
     def refused(*_: object) -> None:
         raise InputError("no such tyre")
 
     monkeypatch.setattr(ForwardModel, "with_values", refused)
     with pytest.raises(InputError, match="no such tyre"):
-        owner.diagnose(settings=replace(COARSE, looks=1), candidates=few, rerun=False)
+        owner.diagnose(settings=COARSE, candidates=few, rerun=False)
 
 
 def test_a_held_out_run_with_readings_at_its_start_only_tests_nothing(tmp_path: Path) -> None:
     owner = written(tmp_path / "study")
-    measure(owner, [SWAP])
+    measure(owner, [SWAP], FINER_MESH)
     table = tmp_path / "study" / f"{HELD_OUT}.csv"
     table.write_text("".join(table.read_text(encoding="utf-8").splitlines(keepends=True)[:2]), encoding="utf-8")
-    diagnosis = owner.diagnose(settings=replace(COARSE, looks=1), candidates=few)
+    diagnosis = owner.diagnose(settings=COARSE, candidates=few)
     assert [run.name for run in diagnosis.gap.runs] == ["slow", "loaded"]
     note = f"held-out run '{HELD_OUT}' was left out: it has readings at 0 s only, which test nothing"
     assert note in diagnosis.notes
