@@ -28,7 +28,8 @@ _RUNG = 2.0 ** (2 / 3)
 class Integration:
     """One run from times[0] to times[-1]; an interrupted `run` keeps the finished part.
 
-    Data are continuous between breakpoints: at its limits a phase uses data from inside.
+    Data are continuous between breakpoints: at its limits a phase uses data from inside. ``tally``: collects the heat
+    budget; None: temperatures alone, by the same steps, without heat budget and hottest points.
     """
 
     def __init__(
@@ -39,7 +40,7 @@ class Integration:
         tolerance: float,
         breakpoints: Array,
         max_step: float,
-        tally: Tally,
+        tally: Tally | None,
     ) -> None:
         self.balance, self.times, self.y, self.tally = balance, times, y, tally
         self.goal, self.max_step = _SHARE * tolerance, max_step
@@ -71,8 +72,9 @@ class Integration:
         self._jump(low)
         b.balance_massless(low, self.y.u, self.y.g)
         b.freeze(low, self.y)
-        self._bound.begin(low, self.y)
-        self._update_peaks(first, self.y)
+        if self.tally is not None:
+            self._bound.begin(low, self.y)
+            self._update_peaks(first, self.y)
         t, h = first, self._first_step(low, last - first)
         while t < last:
             h = self._ladder_step(min(h, self.max_step))
@@ -129,16 +131,18 @@ class Integration:
         due = np.searchsorted(self.times, t_new, side="right")
         end = step.at(1.0)
         b.balance_massless(seen, end.u, end.g)
-        self._bound.advance(seen, end)
+        if self.tally is not None:
+            self._bound.advance(seen, end)
         for i in range(n, due):
             theta = (self.times[i] - t) / step.h if self.times[i] < t_new else 1.0
             self._output(step, theta, end if theta >= 1.0 else None, seen)
-        self.energy += step.energies(1.0)
-        self.stored += b.stored(step.y.u, end.u)
-        self.kept += b.reservoir_stored(step.y.g, end.g)
         self.y = end
         self.accepted += 1
-        self._update_peaks(t_new, self.y)
+        if self.tally is not None:
+            self.energy += step.energies(1.0)
+            self.stored += b.stored(step.y.u, end.u)
+            self.kept += b.reservoir_stored(step.y.g, end.g)
+            self._update_peaks(t_new, end)
 
     def _output(self, step: Step, theta: float, end: State | None, seen: float) -> None:
         b = self.balance
@@ -146,11 +150,16 @@ class Integration:
         t = min(max(step.t + theta * step.h, self._low), seen)
         if end is None and theta > 0:
             b.balance_massless(t, y.u, y.g)
-        slope = step.slope(theta)
-        self._update_peaks(self.times[len(self.values)], y)
+        if self.tally is not None:
+            self._record(self.tally, step, theta, t, y)
         self.values.append(y.u.copy())
         self.gas.append(y.g.copy())
-        self.tally.record(
+
+    def _record(self, tally: Tally, step: Step, theta: float, t: float, y: State) -> None:
+        """Add heat and hottest points at a requested time."""
+        b, slope = self.balance, step.slope(theta)
+        self._update_peaks(self.times[len(self.values)], y)
+        tally.record(
             self.energy + step.energies(theta),
             b.powers(t, y, slope),
             self.stored + b.stored(step.y.u, y.u),

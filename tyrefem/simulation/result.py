@@ -16,15 +16,16 @@ from tyrefem.brief import SHOWN, Brief
 from tyrefem.conduction.field import History
 from tyrefem.conduction.points import OutsideMeshError, as_points
 from tyrefem.errors import InputError
-from tyrefem.geometry.meshing.sagitta import kept_inside, nearest_places, snapped
+from tyrefem.geometry.meshing.sagitta import nearest_places
 from tyrefem.geometry.wall import wall_of
 from tyrefem.mechanics.cautions import warnings_of
 from tyrefem.quantity import KELVIN
 from tyrefem.simulation.effect_states import StateHistory
 from tyrefem.simulation.heat_budget import HeatBudget, whole_tyre
 from tyrefem.simulation.phases import PhaseState, deep_contacts, phase_states
+from tyrefem.simulation.readings import contained_air, logged_columns, temperatures_at, within
 from tyrefem.simulation.rolling_resistance import RollingResistance, just_before, rolling_reading, rolling_resistance
-from tyrefem.simulation.sensors import logged, recorded, true_places
+from tyrefem.simulation.sensors import recorded, true_places
 from tyrefem.simulation.sliding_outcome import SlidingOutcome, sliding_outcome
 from tyrefem.simulation.surroundings import GAS, RIM
 
@@ -116,12 +117,7 @@ class ResultData(Brief):
         ------
         InputError : a point is farther outside; names the point and its distance.
         """
-        try:
-            return np.asarray(self.history.at(points))
-        except OutsideMeshError as error:
-            places = as_points(points).copy()
-            places[error.numbers] = snapped(self.tyre.mesh, places[error.numbers])
-            return np.asarray(self.history.at(places))
+        return temperatures_at(self.tyre, self.history.values, points)
 
     def near(self, points: ArrayLike) -> Array:
         """Temperatures at points of another mesh of the section, as `at`; outside, those of the nearest place."""
@@ -159,9 +155,7 @@ class ResultData(Brief):
 
     def _inside(self, points: ArrayLike) -> Array:
         """Points (n, 2) of the rubber, those outside the straight-sided elements moved to the nearest edge."""
-        section = self.study.section
-        s, depth = section.locate(np.asarray(points, dtype=float).reshape(-1, 2))
-        return kept_inside(self.tyre.mesh, section.place(*section.clamp(s, depth)))
+        return within(self.tyre, points)
 
     @property
     def sensor_points(self) -> Array:
@@ -184,8 +178,7 @@ class ResultData(Brief):
         All are as the logger records them: an effect on its clock shifts every column.
         """
         lumped = {GAS: self.gas_temperature} | ({} if self.rim_temperature is None else {RIM: self.rim_temperature})
-        by_clock = {name: logged(self.study, self.times, column) for name, column in lumped.items()}
-        return {"time_s": self.times, **self.recorded, **by_clock}
+        return logged_columns(self.study, self.times, self.recorded, lumped)
 
     @functools.cached_property
     def recorded(self) -> dict[str, Array]:
@@ -207,9 +200,7 @@ class ResultData(Brief):
     @functools.cached_property
     def gas_temperature(self) -> Array:
         """Contained-air temperature, (n_times,) degC."""
-        if GAS in self.history.reservoirs:
-            return np.asarray(self.history.reservoirs[GAS])
-        return np.full(len(self.times), self.study.card.boundaries.contained_air.fixed_temperature)
+        return contained_air(self.study, self.times, self.history.reservoirs)
 
     @functools.cached_property
     def gas_pressure(self) -> Array:

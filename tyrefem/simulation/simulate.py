@@ -5,8 +5,11 @@ from collections.abc import Callable
 
 import numpy as np
 
+from tyrefem.simulation.readings import contained_air, logged_columns, temperatures_at, within
 from tyrefem.simulation.result import ResultData
 from tyrefem.simulation.rolling_tyre import Array, RollingTyre
+from tyrefem.simulation.sensors import recorded, true_places
+from tyrefem.simulation.surroundings import GAS, RIM
 
 
 def simulate(
@@ -27,6 +30,20 @@ def simulate(
     if tyre.states is not None:
         tyre.states.record(history.times, history.states)
     return ResultData(study, tyre, history, fields, clock.perf_counter() - began)
+
+
+def simulated_readings(tyre: RollingTyre) -> dict[str, Array]:
+    """`ResultData.reading_columns` of `simulate`, by the same steps, without heat budget and hottest points."""
+    study, (times, _) = tyre.study, output_times(tyre)
+    values, reservoirs = tyre.problem.temperatures(
+        times, tyre.drive.initial, study.tolerance, breakpoints=breakpoints(tyre)
+    )
+    places = list(true_places(study).values())
+    sensors = recorded(study, times, temperatures_at(tyre, values, within(tyre, places))) if places else {}
+    lumped = {GAS: contained_air(study, times, reservoirs)}
+    if RIM in reservoirs:
+        lumped[RIM] = reservoirs[RIM]
+    return logged_columns(study, times, sensors, lumped)
 
 
 def breakpoints(tyre: RollingTyre) -> list[float]:

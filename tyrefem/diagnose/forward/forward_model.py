@@ -29,7 +29,7 @@ from tyrefem.inputs.study import StudyData
 from tyrefem.mechanics.nearby_cycles import NearbyCycles, SolvedCycles
 from tyrefem.mechanics.strain_laws import strain_law
 from tyrefem.reduced.model import NotReducibleError
-from tyrefem.simulation.run import run
+from tyrefem.simulation.run import run_readings
 from tyrefem.simulation.surroundings import GAS, RIM
 from tyrefem.variants.answer_store import study_digest
 
@@ -139,7 +139,7 @@ class ForwardModel(Brief):
 
     def history(self, study: StudyData) -> Array:
         """(1 + n_sensors, n_times): times, s, and readings of `sensors` by a full run; ``study``: at a drive."""
-        columns = run(study).reading_columns
+        columns = run_readings(study)
         return np.array([columns[name] for name in ("time_s", *self.sensors)])
 
     def blocks_of(self, number: int, history: Array) -> Array:
