@@ -120,10 +120,14 @@ class ReducedBalance:
         """Load vectors of the given sinks, (n_exchanges, n)."""
         return self.exchanges.loads
 
-    def coefficients(self, t: float) -> tuple[Array, Array]:
-        """Films and conductances, and their sinks, at a time."""
-        h = np.array([_value(film[0], t) for film in self.data])
-        sinks = np.array([0.0 if isinstance(film[1], str) else _value(film[1], t) for film in self.data])
+    def coefficients(self, t: float, known: dict[int, float] | None = None) -> tuple[Array, Array]:
+        """Films and conductances, and their sinks, at a time.
+
+        ``known``: values at this time of functions, by `id`, which variants of a batch share; new ones are added.
+        """
+        values: dict[int, float] = {} if known is None else known
+        h = np.array([_value(film[0], t, values) for film in self.data])
+        sinks = np.array([0.0 if isinstance(film[1], str) else _value(film[1], t, values) for film in self.data])
         return h, sinks
 
     def source(self, t: float, a: Array) -> Array:
@@ -137,7 +141,7 @@ class ReducedBalance:
 
     def powers(self, t: float) -> list[float]:
         """Power into every reservoir from outside, W."""
-        return [_value(_timed(reservoir.power), t) for reservoir in self.reservoirs.values()]
+        return [_value(_timed(reservoir.power), t, {}) for reservoir in self.reservoirs.values()]
 
 
 def reduced_balance(model: ReducedModel, tyre: RollingTyre) -> ReducedBalance:
@@ -216,6 +220,10 @@ def _timed(datum: Any) -> Any:
     return (lambda _x, t: datum(t)) if callable(datum) else datum
 
 
-def _value(datum: Any, t: float) -> float:
+def _value(datum: Any, t: float, known: dict[int, float]) -> float:
     """The value at a time of a number or of a function of time that is uniform in space."""
-    return float(datum(None, t)) if callable(datum) else float(datum)
+    if not callable(datum):
+        return float(datum)
+    if id(datum) not in known:
+        known[id(datum)] = float(datum(None, t))
+    return known[id(datum)]

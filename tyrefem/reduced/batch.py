@@ -73,7 +73,9 @@ class Batch:
 
     def boundary_data(self, t: float) -> BoundaryData:
         """Films, sinks and powers at a time."""
-        pairs = [balance.coefficients(t) for balance in self.balances]
+        # Similar variants share most functions of time: each is evaluated once.
+        known: dict[int, float] = {}
+        pairs = [balance.coefficients(t, known) for balance in self.balances]
         films, sinks = (np.array(each) for each in zip(*pairs, strict=True))
         powers = np.array([balance.powers(t) for balance in self.balances]).reshape(len(films), -1)
         constant = np.einsum(

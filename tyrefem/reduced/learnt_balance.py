@@ -107,7 +107,7 @@ class LearntBalance(ReducedBalance):
         """Heat capacities of the reservoirs, (m,) J/K."""
         return self.inputs["capacities"]
 
-    def coefficients(self, t: float) -> tuple[Array, Array]:
+    def coefficients(self, t: float, known: dict[int, float] | None = None) -> tuple[Array, Array]:
         """Films and conductances, and their sinks, at a time."""
         films = self.inputs[f"films {self._phase(t)}"]
         return films[:, 0], films[:, 1]
