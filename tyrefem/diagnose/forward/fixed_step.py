@@ -144,30 +144,35 @@ class FixedStepRun:
         """
         inside = self._shift_inside(shift)
         steps = self._steps_inside(inside)
-        shifts = np.array([np.zeros_like(shift), shift, inside, inside])
-        shifts[2, :, 0] += steps[:, 0]
-        shifts[3, :, 1] += steps[:, 1]
+        shifts = np.array([shift, inside, inside])
+        shifts[1, :, 0] += steps[:, 0]
+        shifts[2, :, 1] += steps[:, 1]
         changes, of_sensor = {}, dict(zip(self.study.stated_places, steps, strict=True))
         for name, readings in self.displaced(shifts).items():
-            here, there, along, deeper = readings.T
+            there, along, deeper = readings.T
             by, into = of_sensor[name]
-            changes[name] = np.array([there - here, (along - there) / by, (deeper - there) / into])
+            changes[name] = np.array([there - self._unmoved[name], (along - there) / by, (deeper - there) / into])
         return changes
+
+    @cached_property
+    def _unmoved(self) -> dict[str, Array]:
+        """Sensor -> (n_grid,) degC: `displaced` by nothing, for the changes of all further displacements."""
+        still = np.zeros((1, *self._stated.shape))
+        return {name: readings[:, 0] for name, readings in self.displaced(still).items()}
 
     def _steps_inside(self, shift: Array) -> Array:
         """(n_sensors, 2) m: signed steps of difference quotients about moved sensors, away from the end of the wall."""
-        steps, here = np.full(shift.shape, QUOTIENT), self._moved(shift)
-        for direction in (0, 1):
-            ahead = shift.copy()
-            ahead[:, direction] += QUOTIENT
-            distance = np.linalg.norm(self._moved(ahead) - here, axis=-1)
-            steps[distance < QUOTIENT / 2, direction] = -QUOTIENT
-        return steps
+        ahead = shift + QUOTIENT * np.array([[[0.0, 0.0]], [[1.0, 0.0]], [[0.0, 1.0]]])
+        here, *there = self._moved(ahead)
+        distances = np.linalg.norm(np.array(there) - here, axis=-1)
+        return np.where(distances < QUOTIENT / 2, -QUOTIENT, QUOTIENT).T
 
     def _shift_inside(self, shift: Array) -> Array:
         """(n_sensors, 2) m: the shift to where a moved sensor is read, which in the mesh's edge is a sagitta deeper."""
         section, read = self.tyre.study.section, self._moved(shift)
         at_edge = np.linalg.norm(section.place(*(self._stated + shift).T) - read, axis=1) > 1e-9
+        if not at_edge.any():
+            return shift
         return np.where(at_edge[:, None], np.column_stack(section.locate(read)) - self._stated, shift)
 
     @cached_property
