@@ -36,9 +36,10 @@ def test_interruption_keeps_what_is_finished_and_nothing_else(case: Case, tmp_pa
                 os.killpg(running.pid, signal.SIGKILL)
     assert running.returncode == 130
     assert printed == ""
-    assert err.startswith("tyrefem: interrupted; ")
-    assert "the same command resumes from there" in err
-    assert err.count("\n") == 1
+    # A busy machine says before how far it is.
+    (line,) = [each for each in err.splitlines() if "% after " not in each]
+    assert line.startswith("tyrefem: interrupted; ")
+    assert "the same command resumes from there" in line
     # The folder says that it is not complete, and has the finished simulations, whole.
     assert sorted(file.name for file in out.iterdir()) == [".progress", "summary.json"]
     assert json.loads((out / "summary.json").read_text(encoding="utf-8"))["complete"] is False

@@ -51,6 +51,20 @@ def test_models_of_one_layout_share_the_responses(study: Study) -> None:
     assert shared_responses(Evaluations(model_of(study)), unknowns[:2]) is not first
 
 
+def test_results_of_several_methods_come_in_the_order_of_the_questions(study: Study) -> None:
+    evaluations, heard = Evaluations(model_of(study)), list[str]()
+    driven = evaluations.model.driven(study, 0)
+    (history,), (means, (times, readings)) = evaluations.histories_beside(
+        [driven], [("predict", (0, {})), ("base_readings", (0,))], lambda: heard.append("further")
+    )
+    np.testing.assert_array_equal(history, evaluations.model.history(driven))
+    np.testing.assert_array_equal(means, evaluations.model.predict(0, {}))
+    assert readings.shape == (len(evaluations.model.sensors), len(times))
+    assert heard == ["further", "further"]
+    # The run is known now.
+    assert evaluations.histories([driven])[0] is history
+
+
 def test_readings_of_many_columns_are_those_of_each(study: Study) -> None:
     times = np.linspace(0.0, 100.0, 41)
     names = list(study.sensors)

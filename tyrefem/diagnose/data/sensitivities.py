@@ -13,6 +13,7 @@ from tyrefem.brief import Brief
 from tyrefem.cache import Cache
 from tyrefem.diagnose.forward.drive_response import DriveResponse
 from tyrefem.diagnose.forward.evaluations import Evaluations
+from tyrefem.diagnose.forward.forward_model import ForwardModel
 from tyrefem.diagnose.forward.reduced_drive import Modes
 from tyrefem.diagnose.forward.sampling import DriveSampling
 from tyrefem.diagnose.inference.linear_model import DesignMatrix
@@ -164,8 +165,8 @@ def responses(
     near = model.nearby(model.coarse)
     if tick and near is not None:
         tick(f"solving the strain cycle of every drive for {len(near.numbers)} changed numbers", 0, 0)
-    fine = _full_runs(evaluations)
-    answers = evaluations.of("response", [(number, unknowns) for number in range(count)], step)
+    questions = [("response", (number, unknowns)) for number in range(count)]
+    fine, answers = evaluations.histories_beside(_driven(model), questions, step)
     return tuple(
         _response(evaluations, unknowns, (times, readings), history, slopes, Modes(V))
         for (times, readings, slopes, V), history in zip(answers, fine, strict=True)
@@ -183,18 +184,17 @@ def responses_like(
     if any(unknown.key not in columns for unknown in unknowns) or tuple(like[0].slopes) != evaluations.model.sensors:
         return ()
     kept = [columns[unknown.key] for unknown in unknowns]
-    readings = evaluations.of("base_readings", [(number,) for number in range(len(like))])
-    fine = _full_runs(evaluations)
+    questions = [("base_readings", (number,)) for number in range(len(like))]
+    fine, readings = evaluations.histories_beside(_driven(evaluations.model), questions)
     return tuple(
         _response(evaluations, unknowns, here, history, np.array(list(near.slopes.values()))[:, :, kept], near.modes)
         for here, history, near in zip(readings, fine, like, strict=True)
     )
 
 
-def _full_runs(evaluations: Evaluations) -> list[Array]:
-    """The history of every drive by a full run of the study."""
-    model = evaluations.model
-    return evaluations.histories([model.driven(model.study, number) for number in range(len(model.drives))])
+def _driven(model: ForwardModel) -> list[StudyData]:
+    """The study at every drive."""
+    return [model.driven(model.study, number) for number in range(len(model.drives))]
 
 
 def _response(

@@ -120,8 +120,14 @@ def worker_models(workers: Workers) -> Iterator[WorkerModels | None]:
 
 #: The method of `ForwardModel` that simulates a point of a fit.
 SIMULATION = "predict"
+#: The method of a full run.
+HISTORY = "history"
 #: Methods that need that simulation and little else: storing their answers would take longer.
 AFTER_SIMULATION = frozenset({"displaced"})
+
+
+#: The name of a method of `ForwardModel`, and its arguments.
+Question = tuple[str, tuple[Any, ...]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,44 +150,77 @@ class Evaluations(Brief):
 
     def of(self, name: str, questions: Sequence[tuple[Any, ...]], tick: Callable[[], None] | None = None) -> list[Any]:
         """Results of the method ``name`` of `ForwardModel` for several tuples of arguments, in their order."""
-        store = None if name in AFTER_SIMULATION else self.store
-        answers = [store.known(name, arguments) if store else None for arguments in questions]
-        left = [number for number, answer in enumerate(answers) if answer is None]
-        for _ in range(len(answers) - len(left)):
-            if tick:
-                tick()
-        for number, answer in self._answers(name, {number: questions[number] for number in left}):
+        return self.together([(name, arguments) for arguments in questions], tick and (lambda _: tick()))
+
+    def together(self, questions: Sequence[Question], tick: Callable[[str], None] | None = None) -> list[Any]:
+        """Results of several methods, in the order of the questions: no worker waits between two methods.
+
+        ``tick``: called with the name of the method after every result.
+        """
+        answers = [self._known(question) for question in questions]
+        left = {number: questions[number] for number, answer in enumerate(answers) if answer is None}
+        if tick:
+            for number, (name, _) in enumerate(questions):
+                if number not in left:
+                    tick(name)
+        for number, answer in self._answers(left):
             answers[number] = answer
-            if store:
-                store.keep(name, questions[number], answer)
+            name, arguments = questions[number]
+            if self.store and name not in AFTER_SIMULATION:
+                self.store.keep(name, arguments, answer)
             if tick:
-                tick()
+                tick(name)
         return answers
+
+    def _known(self, question: Question) -> Any:
+        name, arguments = question
+        return self.store.known(name, arguments) if self.store and name not in AFTER_SIMULATION else None
 
     def histories(self, studies: Sequence[StudyData]) -> list[Array]:
         """`ForwardModel.history` of every study; those that were run before are not run again."""
+        return self.histories_beside(studies, ())[0]
+
+    def histories_beside(
+        self, studies: Sequence[StudyData], questions: Sequence[Question], tick: Callable[[], None] | None = None
+    ) -> tuple[list[Array], list[Any]]:
+        """`histories`, and the results of further questions that are evaluated `together` with them.
+
+        ``tick``: called after every result of a further question.
+        """
         keys = [study_digest(study) for study in studies]
         left = {key: study for key, study in zip(keys, studies, strict=True) if key not in _HISTORIES}
-        new = dict(zip(left, self.of("history", [(study,) for study in left.values()]), strict=True))
+        runs = [(HISTORY, (study,)) for study in left.values()]
+
+        def step(name: str) -> None:
+            if tick and name != HISTORY:
+                tick()
+
+        # The longest tasks come first: the workers then end at nearly the same time.
+        answers = self.together([*questions, *runs], step)
+        new = dict(zip(left, answers[len(questions) :], strict=True))
 
         def history(key: str, study: StudyData) -> Array:
-            return new[key] if key in new else self.of("history", [(study,)])[0]
+            return new[key] if key in new else self.of(HISTORY, [(study,)])[0]
 
-        return [_HISTORIES.get(key, partial(history, key, study)) for key, study in zip(keys, studies, strict=True)]
+        histories = [
+            _HISTORIES.get(key, partial(history, key, study)) for key, study in zip(keys, studies, strict=True)
+        ]
+        return histories, answers[: len(questions)]
 
-    def _answers(self, name: str, questions: Mapping[int, tuple[Any, ...]]) -> Iterator[tuple[int, Any]]:
+    def _answers(self, questions: Mapping[int, Question]) -> Iterator[tuple[int, Any]]:
         """Yield (number of the question, result) as the results become ready.
 
         The questions of a drive go to the worker that has its simulations, unless another one is idle.
         """
         if self.queues is None:
-            for number, arguments in questions.items():
+            for number, (name, arguments) in questions.items():
                 yield number, getattr(self.model, name)(*arguments)
             return
-        tasks = {number: self._task_of(name, number, arguments) for number, arguments in questions.items()}
+        tasks = {number: self._task_of(name, number, arguments) for number, (name, arguments) in questions.items()}
         for number, worker, answer in self.queues.results(tasks):
+            name, arguments = questions[number]
             if name in (SIMULATION, *AFTER_SIMULATION):
-                self.workers[_point(questions[number])] = worker
+                self.workers[_point(arguments)] = worker
             yield number, answer
 
     def _task_of(self, name: str, number: int, arguments: tuple[Any, ...]) -> HomedTask:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
-from tyrefem.diagnose.forward.evaluations import Evaluations
+from tyrefem.diagnose.forward.evaluations import SIMULATION, Evaluations
 from tyrefem.diagnose.forward.forward_model import FOLLOWED, NOT_FOLLOWED
 from tyrefem.diagnose.forward.reduced_drive import Modes
 from tyrefem.diagnose.settings import DiagnosisSettings
@@ -94,16 +94,19 @@ class Predictions(Brief):
         self, queries: Sequence[tuple[Members, Values]], numbers: Sequence[int], tick: Tick = None
     ) -> list[list[Array]]:
         """Block means at some drives for every pair of a set and its values; NaN for an impossible tyre."""
-        blocks = self._by_model(queries, numbers, tick)
-        fresh = {
-            (place, i) for (place, i), row in blocks.items()
-            if (queries[place][0], i) not in self.certificates and np.isfinite(row).all()
-        }  # fmt: skip
-        left = [(k, i) for k in range(len(queries)) for i in numbers if (k, i) not in blocks or (k, i) in fresh]
-        answers = self.evaluations.of("predict", [(i, queries[k][1]) for k, i in left], tick)
-        self.simulated += len(left)
-        for (k, i), answer in zip(left, answers, strict=True):
-            if (k, i) in fresh and self._certificate_after(queries[k][0], i, blocks[k, i], answer).good:
+        wanted = [(k, i) for k in range(len(queries)) for i in numbers]
+        # A point without a certificate is simulated in any case: together with the reduced models, no worker waits.
+        certain = [(k, i) for k, i in wanted if not self._is_certified(queries[k][0], i)]
+        blocks, answers = self._by_model(queries, numbers, tick, certain)
+        left = [pair for pair in wanted if pair not in blocks and pair not in answers]
+        further = self.evaluations.of(SIMULATION, [(i, queries[k][1]) for k, i in left], tick)
+        answers |= dict(zip(left, further, strict=True))
+        self.simulated += len(answers)
+        for (k, i), answer in answers.items():
+            modal = blocks.get((k, i))
+            if modal is not None and (
+                not np.isfinite(modal).all() or self._certificate_after(queries[k][0], i, modal, answer).good
+            ):
                 continue
             blocks[k, i] = answer
         return [[blocks[k, i] for i in numbers] for k in range(len(queries))]
@@ -166,13 +169,14 @@ class Predictions(Brief):
         numbers = [
             i for i in range(len(self.evaluations.model.drives)) if self.modes and self._is_certified(members, i)
         ]
-        modal = self._by_model([(members, values)], numbers, None)
-        answers = self.evaluations.of("predict", [(i, values) for i in numbers])
+        modal, answers = self._by_model([(members, values)], numbers, None, [(0, i) for i in numbers])
         self.simulated += len(numbers)
         errors = [0.0]
-        for i, answer in zip(numbers, answers, strict=True):
+        for i in numbers:
             row = modal.get((0, i))
-            errors.append(np.inf if row is None else self._certificate_after(members, i, row, answer).whitened_norm)
+            errors.append(
+                np.inf if row is None else self._certificate_after(members, i, row, answers[0, i]).whitened_norm
+            )
         return float(max(errors))
 
     def to_dict(self) -> dict[str, Any]:
@@ -201,16 +205,26 @@ class Predictions(Brief):
         }
 
     def _by_model(
-        self, queries: Sequence[tuple[Members, Values]], numbers: Sequence[int], tick: Tick
-    ) -> dict[tuple[int, int], Array]:
-        """(number of the query, number of the drive) -> block means by reduced models, where they can be used."""
+        self,
+        queries: Sequence[tuple[Members, Values]],
+        numbers: Sequence[int],
+        tick: Tick,
+        simulated: Sequence[tuple[int, int]],
+    ) -> tuple[dict[tuple[int, int], Array], dict[tuple[int, int], Array]]:
+        """(number of the query, number of the drive) -> block means by reduced models, where they can be used.
+
+        Also those by simulations, at the places ``simulated``.
+        """
         places = {i: [k for k, (members, _) in enumerate(queries) if self._is_allowed(members, i)] for i in numbers}
         places = {i: places_here for i, places_here in places.items() if places_here}
-        questions = [(i, self.modes[i], tuple(queries[k][1] for k in places_here)) for i, places_here in places.items()]
+        by_models = [
+            ("reduced", (i, self.modes[i], tuple(queries[k][1] for k in places_here)))
+            for i, places_here in places.items()
+        ]
+        simulations = [(SIMULATION, (i, queries[k][1])) for k, i in simulated]
+        answers = self.evaluations.together([*by_models, *simulations], tick and (lambda _: tick()))
         modal: dict[tuple[int, int], Array] = {}
-        for (i, places_here), (status, blocks) in zip(
-            places.items(), self.evaluations.of("reduced", questions, tick), strict=True
-        ):
+        for (i, places_here), (status, blocks) in zip(places.items(), answers[: len(places)], strict=True):
             for k, state, row in zip(places_here, status, blocks, strict=True):
                 if state == NOT_FOLLOWED:
                     members = queries[k][0]
@@ -220,7 +234,7 @@ class Predictions(Brief):
                 elif state == FOLLOWED:
                     modal[k, i] = row
         self.reduced += len(modal)
-        return modal
+        return modal, dict(zip(simulated, answers[len(places) :], strict=True))
 
     def _is_allowed(self, members: Members, number: int) -> bool:
         """Whether there is a reduced model of the drive, and no certificate that rejects it for this set."""
