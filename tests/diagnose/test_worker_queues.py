@@ -3,12 +3,21 @@
 from __future__ import annotations
 
 import os
+import sys
 import time
 from pathlib import Path
 
 import pytest
 
-from tyrefem.diagnose.forward.worker_queues import HomedTask, WorkerQueues, begun, started_workers, worker_queues
+from tyrefem.diagnose.forward.worker_queues import (
+    EVALUATIONS,
+    HomedTask,
+    WorkerQueues,
+    begun,
+    start_others,
+    started_workers,
+    worker_queues,
+)
 
 
 def meet(folder: Path, name: str, guests: int) -> bool:
@@ -84,6 +93,20 @@ def test_a_result_that_is_begun_early_comes_from_another_process() -> None:
         assert process() != os.getpid()
     with started_workers(1) as workers:
         assert begun(workers, os.getpid)() == os.getpid()
+
+
+def test_processes_that_wait_for_a_core_are_started_later() -> None:
+    with started_workers(2, at_once=1) as workers:
+        assert not isinstance(workers, int)
+        start_others(workers, 1)
+        tasks = {number: HomedTask(number, imported, (), stays=True) for number in (0, 1)}
+        assert [has for _, _, has in workers.results(tasks)] == [True, True]
+    start_others(1, 1)  # without processes there is nothing to start
+
+
+def imported() -> bool:
+    """Whether this process has imported what a worker of a diagnosis needs."""
+    return EVALUATIONS in sys.modules
 
 
 def test_what_a_worker_has_printed_is_not_lost_when_it_ends(capfd: pytest.CaptureFixture[str]) -> None:

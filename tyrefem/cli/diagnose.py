@@ -69,14 +69,16 @@ def diagnose(
 
     The same command continues an interrupted one.
     """
-    from tyrefem.diagnose.forward.worker_queues import started_workers
+    from tyrefem.diagnose.forward.worker_queues import start_others, started_workers
 
     if effects is not None:
         from tyrefem.effects import use_effects
 
         use_effects(effects)  # workers that start later know them, too
-    # Workers import their modules while this process imports its own and reads the study.
-    with started_workers(workers or min(os.cpu_count() or 1, MOST_WORKERS)) as processes:
+    # Workers import their modules while this process, which needs a core, imports its own and reads the study.
+    cores = os.cpu_count() or 1
+    at_once = max(cores - 1, 1)
+    with started_workers(workers or min(cores, MOST_WORKERS), at_once) as processes:
         from tyrefem.api import study as load
         from tyrefem.diagnose.forward.evaluations import ProgressStore
         from tyrefem.diagnose.options import STRATEGIES
@@ -85,6 +87,7 @@ def diagnose(
         from tyrefem.reports.diagnosis import FILES, save
         from tyrefem.variants.answer_store import PROGRESS
 
+        start_others(processes, at_once)
         loaded = load(study, settings(changes), case)
         NEEDS.check(loaded, table)
         if strategy not in STRATEGIES:

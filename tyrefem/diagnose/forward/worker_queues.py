@@ -46,9 +46,9 @@ class WorkerQueues:
         """Number of workers."""
         return len(self.workers)
 
-    def load(self, module: str) -> None:
-        """Let all processes import a module, and do not wait for them."""
-        for worker in self.workers:
+    def load(self, module: str, first: int = 0, last: int | None = None) -> None:
+        """Let the processes ``first`` to ``last`` (exclusive; None: all others) import a module; do not wait."""
+        for worker in self.workers[first:last]:
             worker.submit(_load, module)
 
     def results(self, tasks: Mapping[int, HomedTask]) -> Iterator[tuple[int, int, Any]]:
@@ -120,11 +120,24 @@ def worker_queues(count: int) -> Iterator[WorkerQueues]:
 
 
 @contextmanager
-def started_workers(count: int) -> Iterator[Workers]:
-    """``count`` processes that begin to import what they need; 1 if one process is enough."""
+def started_workers(count: int, at_once: int | None = None) -> Iterator[Workers]:
+    """``count`` processes that begin to import what they need; 1 if one process is enough.
+
+    ``at_once``: so many begin now, the others with `start_others`; None: all.
+    """
     if count == 1:
         yield 1
         return
     with worker_queues(count) as queues:
-        queues.load(EVALUATIONS)
+        queues.load(EVALUATIONS, last=at_once)
         yield queues
+
+
+def start_others(workers: Workers, at_once: int) -> None:
+    """Let the processes begin to import that `started_workers` did not start at once.
+
+    While there are fewer cores than processes, each import would take that much longer, also that of the parent, on
+    which all others wait.
+    """
+    if not isinstance(workers, int):
+        workers.load(EVALUATIONS, first=at_once)
