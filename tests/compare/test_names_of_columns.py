@@ -138,3 +138,39 @@ def test_a_column_has_one_name_on_the_command_line() -> None:
     assert renamed(["T1=crown", "T1=crown", "T2=bead"]) == {"T1": "crown", "T2": "bead"}
     with pytest.raises(InputError, match="--rename: column 'T1' has two names, 'crown' and 'bead'"):
         renamed(["T1=crown", "T1=bead"])
+
+
+CALLED_OTHERWISE = {"Dauer": "time", "Versuch": "run", "T1": "crown", "T2": "shoulder"}
+
+
+@pytest.mark.parametrize("form", ["table", "frame", "index", "entry", "entries", "entry by run name"])
+def test_a_time_and_a_run_column_are_renamed_alike(study: Study, tmp_path: Path, form: str) -> None:
+    frame = logged(study).temperatures.rename(columns="{} [degC]".format)
+    frame.insert(0, "Versuch", "run-1")
+    frame.insert(0, "Dauer [min]", TIMES / 60.0)
+    file = tmp_path / "log.csv"
+    frame.to_csv(file, index=False)
+    names = CALLED_OTHERWISE
+    without_run = {column: name for column, name in names.items() if name != "run"}
+    forms = {
+        "table": lambda: compare(study, file, rename=names),
+        "frame": lambda: compare(study, frame, rename=names),
+        "index": lambda: compare(study, frame.set_index(["Versuch", "Dauer [min]"]), rename=names),
+        "entry": lambda: compare(replace(study, measured=(Entry(file, rename=names),))),
+        "entries": lambda: compare(replace(study, measured=(Entry(file, run="run-1"),)), rename=names),
+        "entry by run name": lambda: compare(
+            replace(study, measured=(Entry(tmp_path / "run-1.csv", rename=without_run),)),
+            frame.drop(columns="Versuch").to_csv(tmp_path / "run-1.csv", index=False) or [tmp_path / "run-1.csv"],
+        ),
+    }
+    comparison = forms[form]()
+    assert set(comparison.table.run) == {"run-1"}
+    assert comparison.rms_K == pytest.approx(0.0, abs=1e-12)
+
+
+def test_how_a_table_was_read_is_a_note(study: Study, tmp_path: Path) -> None:
+    frame = measured_from(study, TIMES).temperatures.rename(columns="{} °C".format)
+    frame.insert(0, "Zeit/s", TIMES)
+    frame.to_csv(tmp_path / "run-1.csv", index=False)
+    words = "Note: run-1.csv: times are those of 'Zeit/s'; units without brackets: crown in degC, shoulder in degC"
+    assert words in compare(study, tmp_path / "run-1.csv").notes

@@ -110,14 +110,6 @@ def test_a_mark_before_text_that_is_not_utf_8(tmp_path: Path) -> None:
     assert read_table(path)[0].sensors == ("crown",)
 
 
-def test_a_row_of_units_is_named(tmp_path: Path) -> None:
-    for first in ("s,degC", "[s],[°C]", "(min),(K)"):
-        file = tmp_path / "logger.csv"
-        file.write_text(f"time,crown\n{first}\n0,25\n", encoding="utf-8")
-        with pytest.raises(InputError, match=r"line 1: 'time' has its unit, .*, in a row of its own"):
-            read_table(file)
-
-
 @pytest.mark.parametrize("stamp", ["2024-05-01 24:00:00", "2024-05-01 12:30:00 UTC", "2024-02-30 12:00"])
 def test_a_first_timestamp_that_cannot_be(tmp_path: Path, stamp: str) -> None:
     file = tmp_path / "logger.csv"

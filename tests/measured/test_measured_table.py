@@ -135,10 +135,10 @@ BAD = {
         "line 1: time unit 'm': write 'min' for minutes; allowed: s,",
     ),
     "other dates": (
-        "time,crown [degC]\n,1\n01.05.2024 12:30,25\n",
-        "line 1: 'time' begins with '01.05.2024 12:30', which is no timestamp like 2024-05-01T12:30:01",
+        "time,crown [degC]\n,1\n05/01/2024 12:30,25\n",
+        "line 1: 'time' begins with '05/01/2024 12:30', which is no timestamp like 2024-05-01T12:30:01",
     ),
-    "date and clock": ("Date,Time,crown [degC]\n2024-05-01,12:30,25\n", "(date and time in one column)"),
+    "date and two numbers": ("Date,Time,crown [degC]\n2024-05-01,12:30,25\n", "which may be h:mm or mm:ss; say which"),
     "torque": (
         "time [s],torque [Nm],crown [degC]\n0,1,25\n",
         "unknown temperature unit 'Nm'; allowed: K, degC, degF (column 'torque [Nm]'); columns of other quantities "

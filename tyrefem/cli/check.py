@@ -94,9 +94,10 @@ def _table(path: Path) -> str:
     readings = sum(int(run.temperatures.notna().sum().sum()) for run in runs)
     channels = dict.fromkeys(heading for run in runs for heading in run.channels)
     left_out = f"; no temperatures, left out: {', '.join(channels)}" if channels else ""
+    notes = "".join(f"; {note}" for note in dict.fromkeys(note for run in runs for note in run.notes))
     return (
         f"a measured table, {counted(len(runs), 'run')}, {counted(readings, 'reading')} of {', '.join(sensors)}"
-        f"{left_out}"
+        f"{left_out}{notes}"
     )
 
 

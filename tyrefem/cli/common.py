@@ -64,7 +64,7 @@ ReducedOption = Annotated[
 IgnoreOption = Annotated[list[str] | None, typer.Option(help="Leave out this column of the tables. Repeatable.")]
 RenameOption = Annotated[
     list[str] | None,
-    typer.Option(metavar="COLUMN=SENSOR", help="Name of a column's sensor in the study. Repeatable."),
+    typer.Option(metavar="COLUMN=SENSOR", help="Name of a column's sensor in the study, or time or run. Repeatable."),
 ]
 
 

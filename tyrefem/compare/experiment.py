@@ -14,9 +14,9 @@ from tyrefem.errors import InputError, ResultWarning, nearest
 from tyrefem.inputs.study import StudyData
 from tyrefem.inputs.study_effects import check_runs
 from tyrefem.measured import MeasuredRun
-from tyrefem.measured.columns import parts
 from tyrefem.measured.frame import frame_lines, is_frame
-from tyrefem.measured.names import ColumnNames, missing_columns_error
+from tyrefem.measured.heading import parts
+from tyrefem.measured.names import ColumnNames, is_time_or_run, missing_columns_error
 from tyrefem.measured.table import MeasuredTable, TableLines, table_lines
 
 #: A CSV file, a pandas DataFrame with the same columns, a run already read, or several of these.
@@ -184,6 +184,13 @@ class _ExperimentReader:
         self.columns: list[str] = []
         self._at_hand: dict[str, MeasuredTable] = {}
         self._lines: dict[Path, TableLines] = {}
+        #: Columns of times and runs that are called otherwise, in any table.
+        self._times_and_runs = {
+            column: name
+            for names in (*(entry.rename for entry in entries), given.rename)
+            for column, name in names.items()
+            if is_time_or_run(name)
+        }
         #: Name that a table without names of runs gives to its run -> such tables, in the order of reading.
         self.nameless: dict[str, list[object]] = {}
 
@@ -211,7 +218,11 @@ class _ExperimentReader:
             planned = [
                 self._experiment(self._later(run, measured), entry) for run in measured.runs if run.name in wanted
             ]
-            result += planned if entry.run is not None else self._apart(planned, self._lines_of(entry.table))
+            result += (
+                planned
+                if entry.run is not None
+                else self._apart(planned, self._lines_of(entry.table), self._names(entry))
+            )
         return result
 
     def of_tables(self, table: Table) -> list[Experiment]:
@@ -233,13 +244,13 @@ class _ExperimentReader:
         if of_file:
             return self.of_entries(of_file)
         lines = self._lines_of(table)
-        return self._apart(self._of_other(lines), lines)
+        return self._apart(self._of_other(lines), lines, self.given)
 
     def _lines_of(self, table: str | Path) -> TableLines:
         """The rows of a file, read once."""
         path = _path(table)
         if path not in self._lines:
-            self._lines[path] = table_lines(table)
+            self._lines[path] = table_lines(table, self._times_and_runs)
         return self._lines[path]
 
     def _of_entry(self, entry: MeasuredEntryLike) -> MeasuredTable:
@@ -258,7 +269,7 @@ class _ExperimentReader:
 
     def _of_other(self, lines: TableLines) -> list[Experiment]:
         """The runs of a table of no entry, each read as the entry of its name says."""
-        of_run = {name: self._entry_of(name) for name in lines.runs(self.given.ignore)}
+        of_run = {name: self._entry_of(name) for name in lines.runs(self.given)}
         result = {}
         for entry in _distinct(of_run.values()):
             names = self._names(entry)
@@ -271,12 +282,12 @@ class _ExperimentReader:
 
     def _of_frame(self, frame: Any) -> list[Experiment]:
         """The runs of a frame."""
-        lines = frame_lines(frame)
-        return self._apart(self._of_other(lines), lines)
+        lines = frame_lines(frame, self._times_and_runs)
+        return self._apart(self._of_other(lines), lines, self.given)
 
-    def _apart(self, planned: list[Experiment], lines: TableLines) -> list[Experiment]:
+    def _apart(self, planned: list[Experiment], lines: TableLines, names: ColumnNames) -> list[Experiment]:
         """The runs of a table; frames whose runs have no names are different runs, files have their own name."""
-        if lines.runs(self.given.ignore) != (lines.name,):
+        if lines.runs(names) != (lines.name,):
             return planned
         tables = self.nameless.setdefault(lines.name, [])
         table: object = lines if lines.in_memory else _path(lines.file)

@@ -94,3 +94,14 @@ def columns_note(planned: Sequence[Experiment]) -> list[str]:
     """A note on columns without temperatures."""
     channels = dict.fromkeys(heading for experiment in planned for heading in experiment.run.channels)
     return [f"Note: columns without temperatures are left out: {', '.join(channels)}"] if channels else []
+
+
+def table_notes(planned: Sequence[Experiment]) -> list[str]:
+    """A note for each table with content beyond the plain form: how it was read."""
+    notes: dict[str, list[str]] = {}
+    for experiment in planned:
+        run = experiment.run
+        if run.notes:
+            table = run.file.name if run.file is not None else f"run '{experiment.name}'"
+            notes.setdefault(table, []).extend(run.notes)
+    return [f"Note: {table}: {'; '.join(dict.fromkeys(lines))}" for table, lines in notes.items()]

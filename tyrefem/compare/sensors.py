@@ -10,7 +10,7 @@ from tyrefem.errors import InputError, nearest, quoted
 from tyrefem.inputs.study import StudyData
 from tyrefem.inputs.study_card import Sensor
 from tyrefem.measured import MeasuredRun
-from tyrefem.measured.columns import parts
+from tyrefem.measured.heading import parts
 
 #: Temperatures that are computed with the sensors and measured like them, but at no place in the rubber.
 OUTSIDE_THE_RUBBER = ("contained-air", "rim")

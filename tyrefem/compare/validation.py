@@ -13,7 +13,7 @@ from tyrefem.compare.comparison import ComparisonData, comparison_of
 from tyrefem.compare.experiment import Experiment, Table, acting_in, driven, experiments
 from tyrefem.compare.history import histories
 from tyrefem.compare.interface import ResultLike, StudyLike, computed_of
-from tyrefem.compare.omitted import ERROR, columns_note, outside_note, outside_notes, start_notes, within
+from tyrefem.compare.omitted import ERROR, columns_note, outside_note, outside_notes, start_notes, table_notes, within
 from tyrefem.compare.reduced_inputs import (
     DEFAULT,
     ReducedInputCertificate,
@@ -112,7 +112,12 @@ def compare(
         raise InputError("no measured time is within the simulated span: " + "; ".join(notes))
     if isinstance(study, StudyData):
         notes += start_notes(study, planned)
-    notes += [*model_notes, *columns_note(planned), *_uncertainty_notes(study, planned, judged.inputs)]
+    notes += [
+        *model_notes,
+        *columns_note(planned),
+        *table_notes(planned),
+        *_uncertainty_notes(study, planned, judged.inputs),
+    ]
     numbers = {number.key: number for number in getattr(study, "uncertain_numbers", ())}
     comparison = comparison_of(
         study.name, all_histories, curves=curves, relative_sd=keys, numbers=numbers, notes=tuple(notes), k=judged.k,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,7 +13,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_matrix
 
 from tyrefem.brief import Brief
-from tyrefem.errors import InputError, nearest, quoted
+from tyrefem.errors import InputError, ResultWarning, nearest, quoted
 from tyrefem.heating_test.card import RigCard, RunCard, SensorCard
 from tyrefem.heating_test.clock import Clock
 from tyrefem.heating_test.grid import PatchGrid
@@ -96,6 +97,8 @@ def read(card: RigCard, tables: Iterable[str | Path], without: Sequence[str] = (
             if run.name in heating_tests:
                 first = next(file for file in tables if run.name in {each.name for each in read_table(file)})
                 raise InputError(f"run '{run.name}' is given twice; it also stands in {first}", file=table)
+            if run.notes:
+                warnings.warn(f"{run.file}: {'; '.join(run.notes)}", ResultWarning, stacklevel=2)
             heating_tests[run.name] = matched(card, run, wanted, set(without))
     if not heating_tests:
         raise InputError("no table of a test is given")

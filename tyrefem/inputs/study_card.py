@@ -264,7 +264,7 @@ class DiagnosisChoice(Card):
 class MeasuredEntry(Card):
     """A measured table: file, run of the file, drive of that run, and whether the run is held out of all fits.
 
-    ``rename``: column -> sensor, for columns of another name. ``ignore``: columns to leave out.
+    ``rename``: column -> sensor, time or run, for columns of another name. ``ignore``: columns to leave out.
     """
 
     table: Text

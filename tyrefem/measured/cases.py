@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from tyrefem.errors import InputError
-from tyrefem.measured.columns import is_time, parts
+from tyrefem.measured.heading import is_time, parts
 from tyrefem.measured.lines import DELIMITERS, LONGEST_PREAMBLE, decode
 
 _HEADING = re.compile(r"^\s*([^\[\]]+?)\s*(?:\[([^\[\]]*)\])?\s*$")

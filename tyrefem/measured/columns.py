@@ -1,11 +1,7 @@
-"""Cells as numbers: empty is no reading, decimal comma or point, all else an error with its line.
-
-A column's heading has its name and unit: ``shoulder inner [degF]`` is the sensor "shoulder inner", in degF.
-"""
+"""Cells as numbers: empty is no reading, decimal comma or point, all else an error with its line."""
 
 from __future__ import annotations
 
-import functools
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -14,28 +10,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.errors import InputError, nearest
-from tyrefem.quantity import KELVIN, parse
-
-TIME_UNITS = {"s": 1.0, "ms": 1e-3, "min": 60.0, "h": 3600.0}
-TEMPERATURE_UNITS = ("degC", "degF", "K")
-_SPELLINGS = {
-    **dict.fromkeys(("s", "sec", "secs", "second", "seconds"), "s"),
-    **dict.fromkeys(("ms", "msec", "millisecond", "milliseconds"), "ms"),
-    **dict.fromkeys(("min", "mins", "minute", "minutes"), "min"),
-    **dict.fromkeys(("h", "hr", "hrs", "hour", "hours"), "h"),
-}
-_LETTERS = {"c": "degC", "celsius": "degC", "f": "degF", "fahrenheit": "degF", "k": "K", "kelvin": "K"}
-_HEADING = re.compile(r"^(?P<name>.*?)\s*(?:\[(?P<square>[^][]*)\]|\((?P<round>[^()]*)\))$", re.DOTALL)
-_TIME = re.compile(r"^(?:(?:elapsed[ _]?)?(?:time|t)|time[ _]?stamp|date[ _/]?time)$", re.IGNORECASE)
-
-
-#: Quantities that loggers write beside temperatures, by their SI unit. Angles are not included: "deg" may be degC.
-_CHANNELS = ("Pa", "m/s", "N", "m", "kg", "s", "Hz", "rad/s", "W", "J", "m/s**2")
-
-
-# The degree sign, similar characters, and its form after a wrong decoding.
-_TEMPERATURE = re.compile(r"^(?:deg(?:rees?|\.)?[\s_]*|[°º˚Â�'*]*\s*)(\w+)$", re.IGNORECASE)
+from tyrefem.errors import InputError
+from tyrefem.quantity import KELVIN
 
 
 @dataclass(frozen=True)
@@ -57,104 +33,10 @@ class Heading:
         return values + ABSOLUTE_ZERO if self.unit == "K" else values
 
 
-def parts(text: str) -> tuple[str, str | None]:
-    """Name and unit (None if there are no brackets) of a heading.
-
-    >>> parts("crown [°C]"), parts("crown")
-    (('crown', '°C'), ('crown', None))
-    """
-    match = _HEADING.match(text.strip())
-    if match is None:
-        return text.strip(), None
-    unit = match["square"] if match["square"] is not None else match["round"]
-    return match["name"].strip(), unit.strip()
-
-
-@functools.lru_cache(maxsize=256)
-def is_channel(text: str) -> bool:
-    """True if a heading's unit is one of pressure, speed, force, length, power...: the column is no temperature sensor.
-
-    >>> [is_channel(text) for text in ("air [kPa]", "speed [km/h]", "load (lbf)", "crown [degC]", "crown [mV]")]
-    [True, True, True, False, False]
-    """
-    unit = parts(text)[1]
-    if not unit or _temperature(unit) is not None:
-        return False
-    if unit == "%":
-        return True
-    for quantity in _CHANNELS:
-        try:
-            parse(f"1 {unit}", quantity)
-        except InputError:
-            continue
-        return True
-    return False
-
-
-def is_time(text: str) -> bool:
-    """True for the heading of a time column: ``time [s]``, ``Time (min)``, ``t [h]``, but not ``T [degC]``."""
-    name, unit = parts(text)
-    return bool(_TIME.match(name)) and _temperature(unit or "") is None
-
-
-def _temperature(unit: str) -> str | None:
-    """degC, degF or K for a unit of temperature, else None."""
-    match = _TEMPERATURE.match(unit)
-    return _LETTERS.get(match[1].lower()) if match else None
-
-
-def time_unit(text: str, first: str = "") -> str:
-    """The unit of the time column, whose first cell is no timestamp.
-
-    Raises
-    ------
-    InputError : no unit, or one that is not a time.
-    """
-    unit = parts(text)[1]
-    if not unit and first.strip("[](){} ").lower() in _SPELLINGS:
-        raise InputError(
-            f"'{text}' has its unit, {first[:20]!r}, in a row of its own; write every unit behind its name, like "
-            "'time [s]' and 'crown [degC]', and remove that row"
-        )
-    if not unit and first and _NUMBER.fullmatch(first) is None:
-        raise InputError(
-            f"'{text}' begins with {first[:40]!r}, which is no timestamp like 2024-05-01T12:30:01 (date and time in "
-            "one column); write all times so, or as numbers with a unit: 'time [s]'"
-        )
-    if not unit:
-        raise InputError(
-            f"'{text}' has no unit; write 'time [s]' (or [min], [h], [ms]), or timestamps like 2024-05-01T12:30:01"
-        )
-    known = _SPELLINGS.get(unit.lower())
-    if unit.lower() == "m":
-        raise InputError(f"time unit '{unit}': write 'min' for minutes; allowed: {', '.join(TIME_UNITS)}")
-    if known is None:
-        raise InputError(f"unknown time unit '{unit[:30]}'{nearest(unit, TIME_UNITS)}")
-    return known
-
-
-def temperature_unit(text: str) -> str:
-    """degC, degF or K, in any common spelling.
-
-    Raises
-    ------
-    InputError : no unit, or one that is not a temperature.
-
-    >>> [temperature_unit(f"crown [{unit}]") for unit in ("°C", "C", "deg F", "k", "Celsius")]
-    ['degC', 'degC', 'degF', 'K', 'degC']
-    """
-    name, unit = parts(text)
-    if not unit:
-        raise InputError(f"'{text[:60]}' has no unit; write '{name[:40]} [degC]' (or [degF], [K])")
-    known = _temperature(unit)
-    if known is None:
-        hint = nearest(unit, TEMPERATURE_UNITS)
-        raise InputError(f"unknown temperature unit '{unit[:30]}'{hint} (column '{text[:60]}')")
-    return known
-
-
 #: Texts of loggers and spreadsheets for "no reading", in small letters.
 NO_READING = frozenset(("", "nan", "na", "n/a", "#n/a", "null", "none", "-", "--", "---"))
+#: Texts of loggers for a broken or missing thermocouple: no reading, too, which a note says.
+BROKEN = frozenset(("ol", "+ol", "-ol", "open", "over", "overload", "overrange", "over range"))
 
 
 #: degC; range of readings at a tyre. No air at the ground was colder than -89 degC, and a brake disc glows at 900 degC;
@@ -177,7 +59,7 @@ def numbers(cells: Sequence[str], lines: Sequence[int], column: str, file: Path,
         return quick
     values = np.full(len(cells), np.nan)
     for index, cell in enumerate(cells):
-        if gaps and cell.lower() in NO_READING:
+        if gaps and (cell.lower() in NO_READING or cell.lower() in BROKEN):
             continue
         if _NUMBER.fullmatch(cell) is None:
             raise InputError(f"{_place(lines[index], column)}: {_reason(cell, gaps)}", file=file)
@@ -185,6 +67,11 @@ def numbers(cells: Sequence[str], lines: Sequence[int], column: str, file: Path,
         if not np.isfinite(values[index]):
             raise InputError(f"{_place(lines[index], column)}: {cell[:30]!r} is not finite", file=file)
     return values
+
+
+def is_number(cell: str) -> bool:
+    """Whether a cell is a number, with decimal comma or point."""
+    return _NUMBER.fullmatch(cell) is not None
 
 
 def _plain_numbers(cells: Sequence[str], gaps: bool) -> NDArray[np.float64] | None:

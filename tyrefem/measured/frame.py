@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import tempfile
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tyrefem.errors import InputError
-from tyrefem.measured.columns import is_time, parts
+from tyrefem.measured.heading import in_brackets, is_time
 from tyrefem.measured.lines import split
+from tyrefem.measured.names import in_table_words
 from tyrefem.measured.table import TableLines
 
 if TYPE_CHECKING:
@@ -25,10 +27,11 @@ def is_frame(table: object) -> bool:
     return hasattr(table, "to_csv") and hasattr(table, "columns")
 
 
-def frame_lines(frame: pd.DataFrame) -> TableLines:
+def frame_lines(frame: pd.DataFrame, rename: Mapping[str, str] | None = None) -> TableLines:
     """The rows of a frame with the columns of a file: ``time [s]`` (or the index so named), perhaps ``run``, sensors.
 
     A result's `readings` have this form. A frame without a column ``run`` is one run, "measured".
+    ``rename``: column -> name, for columns of times and runs that are called otherwise.
 
     >>> import pandas as pd
     >>> frame = pd.DataFrame({"time [min]": [0, 1, 2], "crown [degF]": [77.0, None, 95.0]})
@@ -39,19 +42,19 @@ def frame_lines(frame: pd.DataFrame) -> TableLines:
     with tempfile.TemporaryDirectory(prefix="tyrefem-") as folder:
         # It is read like a file, so that a frame and a file follow the same rules.
         file = Path(folder) / "measured.csv"
-        _flat(frame).to_csv(file, index=False, lineterminator="\n", date_format=STAMP)
+        _flat(frame, rename or {}).to_csv(file, index=False, lineterminator="\n", date_format=STAMP)
         try:
-            lines = split(file)
+            lines = split(file, rename)
         except InputError as error:
             raise InputError(error.message, field=error.field, file=PLACE) from None
     return TableLines(lines, PLACE, file.stem, in_memory=True)
 
 
-def _flat(frame: pd.DataFrame) -> pd.DataFrame:
+def _flat(frame: pd.DataFrame, rename: Mapping[str, str]) -> pd.DataFrame:
     """The frame with time or run from its index as a column; a result's `readings` get their units."""
     if frame.columns.nlevels > 1:
         raise InputError("its columns have several levels; wanted: one name each, like 'crown [degC]'", file=PLACE)
-    levels = {name: level for level, name in enumerate(frame.index.names) if _is_needed(name)}
+    levels = {name: level for level, name in enumerate(frame.index.names) if _is_needed(name, rename)}
     # `set_index(..., drop=False)` keeps the column beside the index.
     missing = [level for name, level in levels.items() if name not in frame.columns]
     flat = frame.reset_index(missing) if missing else frame
@@ -60,11 +63,14 @@ def _flat(frame: pd.DataFrame) -> pd.DataFrame:
     return flat.rename(columns=lambda name: "time [s]" if name == "time_s" else _in_degC(str(name)))
 
 
-def _is_needed(name: object) -> bool:
+def _is_needed(name: object, rename: Mapping[str, str]) -> bool:
     """Whether a level of the index is a time or the run."""
-    return isinstance(name, str) and (is_time(name) or name == "time_s" or name.lower() == "run")
+    if not isinstance(name, str):
+        return False
+    named = in_table_words(name, rename)
+    return is_time(named) or named == "time_s" or named.lower() == "run"
 
 
 def _in_degC(name: str) -> str:
     """The heading, with its unit, of a column of `Result.readings`, which has none."""
-    return name if parts(name)[1] or name.lower() == "run" else f"{name} [degC]"
+    return name if in_brackets(name)[1] or name.lower() == "run" else f"{name} [degC]"

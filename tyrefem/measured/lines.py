@@ -7,13 +7,16 @@ import csv
 import os
 import re
 import unicodedata
+from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
 from tyrefem.errors import InputError, nearest
 from tyrefem.estimates.work import TEXT, check_memory
-from tyrefem.measured.columns import is_time, parts
+from tyrefem.measured.heading import is_time, parts
+from tyrefem.measured.names import in_table_words
+from tyrefem.measured.unit_row import with_units
 from tyrefem.output import note_input
 
 #: Largest size of a table; larger files are mistakes (a video, a raw waveform). 5 million rows of 10 sensors fit.
@@ -27,13 +30,17 @@ _COMMENT = re.compile(r'^[\s"]*(?:#|//)')
 
 @dataclass(frozen=True)
 class Lines:
-    """The heading and the rows of a table, with their line numbers in the file (counted from 1)."""
+    """The heading and the rows of a table, with their line numbers in the file (counted from 1).
+
+    ``notes``: how the heading was read, if not as it stands.
+    """
 
     comments: tuple[str, ...]
     heading: tuple[str, ...]
     heading_line: int
     rows: list[list[str]]
     numbers: list[int]
+    notes: tuple[str, ...] = ()
 
 
 def decode(path: Path) -> str:
@@ -80,16 +87,22 @@ def _beside(path: Path) -> str:
     return nearest(path.name, names) if names else ""
 
 
-def split(path: Path) -> Lines:
+def split(path: Path, rename: Mapping[str, str] | None = None) -> Lines:
     """The cells of a table. Blank lines, and lines that begin with ``#`` or ``//``, are not rows.
 
     A line that begins with ``;`` is a row (in a semicolon table its first cell is empty), not a comment.
-    Up to 100 lines of free text may precede the heading, which is the first line with a time column.
+    Up to 100 lines of free text may precede the heading, which is the first line with a time column. Units in a row
+    of their own below it are joined to its names.
+
+    Parameters
+    ----------
+    rename : column -> name, for a time column that is called otherwise.
 
     Raises
     ------
-    InputError : errors of `decode`; no time column; rows longer or shorter than the heading.
+    InputError : errors of `decode` and `with_units`; no time column; rows longer or shorter than the heading.
     """
+    rename = rename or {}
     lines = re.split("\r\n|\r|\n", decode(path))
     comments, content = [], []
     for number, line in enumerate(lines, 1):
@@ -99,32 +112,56 @@ def split(path: Path) -> Lines:
             content.append((number, line))
     if not content:
         raise InputError("has only comments, no heading and no readings", file=path)
-    position, delimiter = _heading(content, path)
+    try:
+        position, delimiter = _heading(content, path, rename)
+    except InputError as error:
+        raise error.within(file=path) from None
     number, line = content[position]
     heading = tuple(_without_trailing_empty(_cells(line, delimiter, number, path)))
     rows, numbers = _rows(content[position + 1 :], delimiter, heading, path)
     preamble = [text.strip(DELIMITERS + ' "') for _, text in content[:position]]
-    return Lines((*preamble, *comments), heading, number, rows, numbers)
+    notes: tuple[str, ...] = ()
+    if rows:
+        try:
+            joined = with_units(heading, rows[0], [rank is not None for rank in (_rank(c, rename) for c in heading)])
+        except InputError as error:
+            raise InputError(f"line {numbers[0]}: {error.message}", file=path) from None
+        if joined is not None:
+            notes = (f"units are those of line {numbers[0]}",)
+            heading, rows, numbers = joined, rows[1:], numbers[1:]
+    return Lines((*preamble, *comments), heading, number, rows, numbers, notes)
 
 
-def _heading(content: list[tuple[int, str]], path: Path) -> tuple[int, str]:
-    """Index and delimiter of the first line with a time column; lines with a unit have precedence."""
-    without_unit = None
+def _heading(content: list[tuple[int, str]], path: Path, rename: Mapping[str, str]) -> tuple[int, str]:
+    """Index and delimiter of the line with a time column: the first of those of the lowest `_rank`."""
+    best: tuple[int, int, str] | None = None
     for position, (number, line) in enumerate(content[:LONGEST_PREAMBLE]):
         for delimiter in DELIMITERS:
-            times = [cell for cell in _cells(line, delimiter, number, path, strict=False) if is_time(cell)]
-            if any(parts(cell)[1] for cell in times):
-                return position, delimiter
-            if times and without_unit is None:
-                without_unit = position, delimiter
-    if without_unit is not None:
-        return without_unit
+            cells = _cells(line, delimiter, number, path, strict=False)
+            for rank in (_rank(cell, rename) for cell in cells):
+                if rank is not None and (best is None or rank < best[0]):
+                    best = rank, position, delimiter
+    if best is not None:
+        return best[1:]
     number, line = content[0]
     raise InputError(
         f"line {number}: no time column in {line.strip()[:60]!r}; the heading must have "
-        "'time [s]' (or [min], [h], [ms]) and one column per sensor, like 'crown [degC]'",
+        "'time [s]' (or [min], [h], [ms]) and one column per sensor, like 'crown [degC]'; "
+        "rename a time column of another name to 'time'",
         file=path,
     )
+
+
+def _rank(cell: str, rename: Mapping[str, str]) -> int | None:
+    """How surely a cell is the heading of a time column, 0 most; None: it is none.
+
+    Names that the user gives go before all others, names in other words behind them; with a unit before without.
+    """
+    renamed = in_table_words(cell, rename)
+    kinds = renamed != cell and is_time(renamed), is_time(cell), is_time(cell, in_other_words=True)
+    if not any(kinds):
+        return None
+    return 2 * kinds.index(True) + (not parts(renamed)[1])
 
 
 def _rows(

@@ -9,12 +9,12 @@ from pathlib import Path
 from typing import Any
 
 from tyrefem.errors import InputError, nearest, quoted
-from tyrefem.measured.columns import parts
+from tyrefem.measured.heading import is_time, parts
 
 
 @dataclass(frozen=True)
 class ColumnNames:
-    """Names for the columns of all tables: ``rename``, column -> sensor, and columns to ``ignore``."""
+    """Names for the columns of all tables: ``rename``, column -> sensor, time or run, and columns to ``ignore``."""
 
     rename: Mapping[str, str]
     ignore: tuple[str, ...]
@@ -46,6 +46,34 @@ class ColumnNames:
             missing = [name for name in names if name not in {*columns, *self.rename.values()}]
             if missing:
                 raise missing_columns_error(missing, purpose, dict.fromkeys(parts(name)[0] for name in columns))
+
+
+def is_time_or_run(name: str) -> bool:
+    """Whether a new name makes a column that of times or runs."""
+    return is_time(name) or name.lower() == "run"
+
+
+def in_table_words(text: str, rename: Mapping[str, str]) -> str:
+    """A heading with the name that ``rename`` gives to a column of times or runs; all others as they are.
+
+    Raises
+    ------
+    InputError : the new name has a unit other than that of the heading.
+
+    >>> in_table_words("Zeit [s]", {"Zeit": "time"}), in_table_words("Dauer", {"Dauer": "time [mm:ss]"})
+    ('time [s]', 'time [mm:ss]')
+    """
+    name, unit = parts(text)
+    new = rename.get(text, rename.get(name, ""))
+    if new.lower() == "run":
+        return new
+    if not is_time(new):
+        return text
+    new_name, new_unit = parts(new)
+    if unit and new_unit and unit != new_unit:
+        raise InputError(f"column '{text}' has its unit; rename it to '{new_name}' instead of '{new}'", field="rename")
+    unit = unit or new_unit
+    return f"{new_name} [{unit}]" if unit else new_name
 
 
 def _composed(name: str) -> str:

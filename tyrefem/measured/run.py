@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.errors import InputError
-from tyrefem.measured.columns import parts
+from tyrefem.measured.heading import parts
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -29,6 +29,7 @@ class MeasuredRun:
     file : the source, None for data made in memory.
     comments : comment and preamble lines of the file, without their marks.
     channels : headings of columns with other quantities than temperatures (speed, pressure), which are left out.
+    notes : how content beyond the plain form was read, such as times in h:mm:ss.
     """
 
     name: str
@@ -37,6 +38,7 @@ class MeasuredRun:
     file: Path | None = None
     comments: tuple[str, ...] = ()
     channels: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
 
     @property
     def sensors(self) -> tuple[str, ...]:
@@ -87,6 +89,7 @@ class MeasuredRun:
             file=self.file if self.file == other.file else None,
             comments=(*self.comments, *other.comments),
             channels=tuple(dict.fromkeys((*self.channels, *other.channels))),
+            notes=tuple(dict.fromkeys((*self.notes, *other.notes))),
         )
 
     def write(self, path: str | Path) -> Path:

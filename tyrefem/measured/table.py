@@ -11,29 +11,15 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.brief import counted
 from tyrefem.errors import InputError
-from tyrefem.measured.columns import (
-    TIME_UNITS,
-    Heading,
-    check_decimal_mark,
-    check_plausible,
-    is_channel,
-    is_time,
-    numbers,
-    parts,
-    temperature_unit,
-    time_unit,
-)
+from tyrefem.measured.columns import BROKEN, Heading, check_decimal_mark, check_plausible, numbers
+from tyrefem.measured.heading import in_brackets, is_channel, parts, temperature_unit
 from tyrefem.measured.lines import Lines, split
-from tyrefem.measured.names import ColumnNames, missing_columns_error
+from tyrefem.measured.names import ColumnNames, in_table_words, missing_columns_error
 from tyrefem.measured.run import MeasuredRun
-from tyrefem.measured.timestamps import are_timestamps, microseconds
+from tyrefem.measured.times import TimeColumn
 from tyrefem.output import as_path
-
-#: s; 30 years. A larger time is a calendar time and needs ``time_offset``.
-LONGEST_TIME = 1e9
-#: "Unit" of a time column that holds timestamps.
-STAMPED = "ISO 8601"
 
 
 def read_table(
@@ -46,7 +32,8 @@ def read_table(
     """The runs of a thermocouple table in the format of loggers.
 
     The heading has ``time [s]`` (or min, h, ms), perhaps ``run``, and one column per sensor with its unit:
-    ``crown [degC]``, ``[degF]`` or ``[K]``. Timestamps (ISO 8601) count from the first row of their run. Columns in
+    ``crown [degC]``, ``[degF]`` or ``[K]``. Timestamps, and clock times as h:mm:ss, count from the first row of their
+    run. Units may stand in a row of their own. Columns in
     a unit of pressure, speed, force, length or power are not sensors and are left out (`MeasuredRun.channels`).
     Comma, semicolon or tab between columns; decimal comma or point; UTF-8, UTF-16 or Latin-1. Empty, ``NaN``, ``-``,
     ``--`` = no reading. ``#`` and ``//`` begin a comment.
@@ -55,12 +42,14 @@ def read_table(
     ----------
     path : the CSV file.
     time_offset : s, added to every time of the table (model time = table time + offset).
-    rename : column name -> sensor name.
+    rename : column name -> sensor name, or ``time`` or ``run``. A time column without unit is given one so:
+        ``{"Dauer": "time [mm:ss]"}``.
     ignore : column names to leave out, for temperatures of other things than sensors.
 
     Returns
     -------
-    One `MeasuredRun` per run, in the order of their first row.
+    One `MeasuredRun` per run, in the order of their first row. Its ``notes`` say how content beyond the plain form was
+    read.
 
     Raises
     ------
@@ -75,7 +64,7 @@ def read_table(
     ('run-1', [0.0, 60.0, 120.0], [25.0, nan, 35.0])
     """
     names = ColumnNames.of(ignore=ignore, rename=rename)
-    table = table_lines(path).read(time_offset=time_offset, rename=names.rename, ignore=names.ignore)
+    table = table_lines(path, names.rename).read(time_offset=time_offset, rename=names.rename, ignore=names.ignore)
     missing = table.missing(names.rename)
     if missing:
         raise missing_columns_error(missing, "to rename", table.columns, table.file)
@@ -115,10 +104,11 @@ class TableLines:
     name: str
     in_memory: bool = False
 
-    def runs(self, ignore: Iterable[str] = ()) -> tuple[str, ...]:
+    def runs(self, names: ColumnNames) -> tuple[str, ...]:
         """Names of the runs, if no more than one column has them."""
-        without = frozenset(ignore)
-        columns = [column for column, text in enumerate(self.lines.heading) if _is_run(text, without)]
+        ignore, heading = frozenset(names.ignore), enumerate(self.lines.heading)
+        named = ((i, in_table_words(text, names.rename)) for i, text in heading if not _is_ignored(text, ignore))
+        columns = [column for column, text in named if _is_run(text)]
         return tuple(dict.fromkeys(row[columns[0]] for row in self.lines.rows)) if columns else (self.name,)
 
     def read(
@@ -140,34 +130,38 @@ class TableLines:
         runs = []
         rows_of_runs = _rows_of_runs(None if columns.run is None else cells[columns.run], lines, file, self.name)
         source = None if self.in_memory else file
-        for name, times in _times(cells[time.column], lines, time, rows_of_runs, time_offset, file).items():
+        times_of_runs, notes = time.of_runs(lines, rows_of_runs, time_offset, file)
+        notes = (*lines.notes, *notes, *_notes_on_sensors(sensors, lines.heading, cells))
+        for name, times in times_of_runs.items():
             rows = rows_of_runs[name]
-            _increasing(times, [lines.numbers[row] for row in rows], name, file)
             held = {sensor: values[rows] for sensor, values in readings.items() if np.isfinite(values[rows]).any()}
             if not held:
                 raise InputError(f"run '{name}' has no reading at all", file=file)
             times.flags.writeable = False
-            runs.append(MeasuredRun(name, times, pd.DataFrame(held), source, lines.comments, columns.channels))
+            runs.append(MeasuredRun(name, times, pd.DataFrame(held), source, lines.comments, columns.channels, notes))
         return MeasuredTable(file, tuple(runs), lines.heading)
 
 
-def table_lines(path: str | Path) -> TableLines:
-    """The rows of a file."""
+def table_lines(path: str | Path, rename: Mapping[str, str] | None = None) -> TableLines:
+    """The rows of a file; ``rename``: column -> name, for a time column that is called otherwise."""
     file = as_path(path, "path")
-    return TableLines(split(file), file, file.stem)
+    return TableLines(split(file, rename), file, file.stem)
 
 
-def _is_run(text: str, ignore: frozenset[str]) -> bool:
+def _is_ignored(text: str, ignore: frozenset[str]) -> bool:
+    return bool({text, parts(text)[0]} & ignore)
+
+
+def _is_run(text: str) -> bool:
     """Whether a heading is that of the run column."""
-    name = parts(text)[0]
-    return name.lower() == "run" and not {text, name} & ignore
+    return parts(text)[0].lower() == "run"
 
 
 @dataclass(frozen=True)
 class _Columns:
     """The time column, the index of the run column, the sensors, the headings of other quantities."""
 
-    time: Heading
+    time: TimeColumn
     run: int | None
     sensors: tuple[Heading, ...]
     channels: tuple[str, ...]
@@ -175,23 +169,25 @@ class _Columns:
 
 def _columns(lines: Lines, rename: dict[str, str], ignore: frozenset[str], file: Path) -> _Columns:
     where = f"line {lines.heading_line}: "
-    time: Heading | None = None
+    try:
+        named = {
+            column: in_table_words(text, rename)
+            for column, text in enumerate(lines.heading)
+            if not _is_ignored(text, ignore) and (text or any(row[column] for row in lines.rows))
+        }
+        time = TimeColumn.of(named, lines.rows)
+    except InputError as error:
+        raise InputError(where + error.message, field=error.field, file=file) from None
     run: int | None = None
     sensors: dict[str, Heading] = {}
     channels, without_unit, wrong = [], [], []
-    for column, text in enumerate(lines.heading):
+    for column in named:
+        text = lines.heading[column]
         name = parts(text)[0]
-        if {text, name} & ignore or (not text and not any(row[column] for row in lines.rows)):
+        if time is not None and column in (time.column, time.date):
             continue
         try:
-            if is_time(text):
-                if time is not None:
-                    raise InputError(f"two time columns, {time.column + 1} and {column + 1}")
-                cells = [row[column] for row in lines.rows[:100]]
-                unit = STAMPED if are_timestamps(cells) else time_unit(text, next(filter(None, cells), ""))
-                time = Heading(name, unit, column)
-                continue
-            if _is_run(text, ignore):
+            if _is_run(named[column]):
                 if run is not None:
                     raise InputError(f"two run columns, {run + 1} and {column + 1}")
                 run = column
@@ -226,22 +222,21 @@ def _columns(lines: Lines, rename: dict[str, str], ignore: frozenset[str], file:
     return _Columns(time, run, tuple(sensors.values()), tuple(channels))
 
 
-def _times(
-    cells: Sequence[str], lines: Lines, time: Heading, runs: Mapping[str, NDArray[np.intp]], offset: float, file: Path
-) -> dict[str, NDArray[np.float64]]:
-    """Run -> its times, s. Timestamps are relative to the first row of their run."""
-    shown = lines.heading[time.column]
-    if time.unit == STAMPED:
-        stamps = microseconds(cells, lines.numbers, shown, file)
-        return {name: (stamps[rows] - stamps[rows[0]]) / 1e6 + offset for name, rows in runs.items()}
-    times = numbers(cells, lines.numbers, shown, file, gaps=False) * TIME_UNITS[time.unit] + offset
-    if np.abs(times).max() > LONGEST_TIME:
-        raise InputError(
-            f"column '{shown}': {times[np.abs(times).argmax()]:g} s is no time since a start; "
-            "give time_offset if the table holds calendar times",
-            file=file,
-        )
-    return {name: times[rows] for name, rows in runs.items()}
+def _notes_on_sensors(
+    sensors: Iterable[Heading], heading: Sequence[str], cells: Sequence[Sequence[str]]
+) -> tuple[str, ...]:
+    """Notes on units without brackets, and on words for a broken thermocouple."""
+    notes = []
+    bare = [sensor for sensor in sensors if in_brackets(heading[sensor.column])[1] is None]
+    if bare:
+        names = ", ".join(f"{parts(heading[sensor.column])[0][:60]} in {sensor.unit}" for sensor in bare)
+        notes.append(f"units without brackets: {names}")
+    for sensor in sensors:
+        broken = [cell for cell in cells[sensor.column] if cell.lower() in BROKEN]
+        if broken:
+            words = ", ".join(dict.fromkeys(broken))
+            notes.append(f"no reading in {counted(len(broken), 'cell')} of '{heading[sensor.column][:60]}' ({words})")
+    return tuple(notes)
 
 
 def _readings(heading: Heading, cells: Sequence[str], lines: Lines, file: Path) -> NDArray[np.float64]:
@@ -263,14 +258,3 @@ def _rows_of_runs(cells: Sequence[str] | None, lines: Lines, file: Path, only: s
             raise InputError(f"line {line}: the run column is empty", file=file)
         rows_of.setdefault(cell, []).append(row)
     return {name: np.array(rows) for name, rows in rows_of.items()}
-
-
-def _increasing(times: NDArray[np.float64], lines: list[int], name: str, file: Path) -> None:
-    for row in np.flatnonzero(np.diff(times) <= 0.0)[:1]:
-        same = times[row] == times[row + 1]
-        wrong = "the same time" if same else f"time runs back from {times[row]:g} s to {times[row + 1]:g} s"
-        at = f", {times[row]:g} s," if same else ""
-        raise InputError(
-            f"lines {lines[row]} and {lines[row + 1]}: {wrong}{at} in run '{name}'; times must increase",
-            file=file,
-        )

@@ -1,4 +1,7 @@
-"""Times as ISO 8601 timestamps: ``2024-05-01T12:30:01.5+02:00``, also with a blank in place of the T."""
+"""Times as timestamps: ``2024-05-01T12:30:01.5+02:00``, with a blank in place of the T, or in two columns.
+
+Dates are ISO 8601, or have one meaning all the same: ``2024/05/01``, ``01.05.2024``. ``05/01/2024`` has two.
+"""
 
 from __future__ import annotations
 
@@ -13,6 +16,11 @@ from numpy.typing import NDArray
 from tyrefem.errors import InputError
 
 _TIMESTAMP = re.compile(r"\d{4}-\d{2}-\d{2}[T ]\d{2}:\d{2}")
+_DATE = re.compile(
+    r"(?:(?P<y>\d{4})([-/.])(?P<m>\d{1,2})\2(?P<d>\d{1,2})|(?P<day>\d{1,2})\.(?P<month>\d{1,2})\.(?P<year>\d{4}))"
+    r"(?:[T ]+(?P<clock>\d.*))?",
+    re.ASCII,
+)
 
 
 def are_timestamps(cells: Sequence[str]) -> bool:
@@ -21,7 +29,22 @@ def are_timestamps(cells: Sequence[str]) -> bool:
     >>> are_timestamps(["", "2024-05-01 12:30:01"]), are_timestamps(["0.5"]), are_timestamps([])
     (True, False, False)
     """
-    return _TIMESTAMP.match(next(filter(None, cells), "")) is not None
+    return _TIMESTAMP.match(_iso(next(filter(None, cells), ""))) is not None
+
+
+def is_day_first(cell: str) -> bool:
+    """Whether a cell begins with a date like ``01.05.2024``."""
+    match = _DATE.fullmatch(cell)
+    return match is not None and match["day"] is not None
+
+
+def stamped(date: str, clock: str) -> str:
+    """A date and a clock time of one row as a timestamp.
+
+    >>> stamped("01.05.2024", "9:30:01"), stamped("05/01/2024", "9:30")
+    ('2024-05-01 09:30:01', '05/01/2024 9:30')
+    """
+    return _iso(f"{date} {clock}" if date and clock else "")
 
 
 def microseconds(cells: Sequence[str], lines: Sequence[int], column: str, file: Path) -> NDArray[np.int64]:
@@ -35,7 +58,7 @@ def microseconds(cells: Sequence[str], lines: Sequence[int], column: str, file: 
     for cell, line in zip(cells, lines, strict=True):
         where = f"line {line}, column '{column[:60]}'"
         try:
-            times.append(datetime.fromisoformat(cell))
+            times.append(datetime.fromisoformat(_iso(cell)))
         except ValueError:
             words = f"{cell[:40]!r} is not a timestamp like 2024-05-01T12:30:01"
             words += ", but the first time is" if times else " or 2024-05-01T12:30:01+02:00; the date must exist"
@@ -44,3 +67,14 @@ def microseconds(cells: Sequence[str], lines: Sequence[int], column: str, file: 
             words = "one timestamp has an offset from UTC and another has none"
             raise InputError(f"{where}: {words}", file=file)
     return np.array([(time - times[0]) // timedelta(microseconds=1) for time in times], dtype=np.int64)
+
+
+def _iso(cell: str) -> str:
+    """A timestamp with its date as ISO 8601 and two digits of the hour; all else as it is."""
+    match = _DATE.fullmatch(cell)
+    if match is None:
+        return cell
+    year, month, day = (match[long] or match[short] for long, short in (("year", "y"), ("month", "m"), ("day", "d")))
+    clock = match["clock"]
+    text = f"{year}-{month:0>2}-{day:0>2}"
+    return text if clock is None else f"{text} {'0' if clock[1:2] == ':' else ''}{clock}"

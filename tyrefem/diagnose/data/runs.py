@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.compare.experiment import Experiment
-from tyrefem.compare.omitted import ERROR, columns_note, outside_notes, start_notes, within
+from tyrefem.compare.omitted import ERROR, columns_note, outside_notes, start_notes, table_notes, within
 from tyrefem.diagnose.data.noise import ReadingNoise, noise_of
 from tyrefem.diagnose.forward.sampling import DriveSampling, SensorSampling
 from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
@@ -120,7 +120,12 @@ def measured_drives(
         if run.last <= 0:
             raise InputError(f"run '{run.name}' has readings at 0 s only", field="measured", file=study.file)
     empty = [run for run in runs if run.last <= 0]
-    notes = (*outside_notes(study, planned), *start_notes(study, planned), *columns_note(planned))
+    notes = (
+        *outside_notes(study, planned),
+        *start_notes(study, planned),
+        *columns_note(planned),
+        *table_notes(planned),
+    )
     return with_noise_of_data(tuple(run for run in runs if run not in empty), settings), (
         *(f"held-out run '{run.name}' was left out: it has readings at 0 s only, which test nothing" for run in empty),
         *(note.removeprefix("Note: ") for note in notes),

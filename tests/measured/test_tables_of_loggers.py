@@ -1,0 +1,184 @@
+"""Tables of loggers that are not in the plain form: read where they have one meaning, with a note, else refused."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from tyrefem.errors import InputError
+from tyrefem.measured import MeasuredRun, read_table
+
+pytestmark = pytest.mark.fast
+
+
+def table(tmp_path: Path, text: str) -> Path:
+    path = tmp_path / "logger.csv"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def only(tmp_path: Path, text: str, **names: object) -> MeasuredRun:
+    (run,) = read_table(table(tmp_path, text), **names)  # type: ignore[arg-type]
+    return run
+
+
+def refused(tmp_path: Path, text: str, **names: object) -> str:
+    with pytest.raises(InputError) as caught:
+        read_table(table(tmp_path, text), **names)  # type: ignore[arg-type]
+    return str(caught.value)
+
+
+#: Text -> notes. All are the same run: crown 25 degC at 0 s and 26.5 degC at 70.5 s.
+SAME = {
+    "time,crown [degC]\n0:00:00,25\n0:01:10.5,26.5\n": [
+        "times in 'time' are h:mm:ss, counted from the first row of the run (0:00:00)"
+    ],
+    "Time [hh:mm:ss];crown [°C]\n12:30:00;25,0\n12:31:10,5;26,5\n": [
+        "times in 'Time [hh:mm:ss]' are h:mm:ss, counted from the first row of the run (12:30:00)"
+    ],
+    "Elapsed time (mm:ss),crown [degC]\n00:00,25\n01:10.5,26.5\n": [
+        "times in 'Elapsed time (mm:ss)' are mm:ss since the start"
+    ],
+    "Date,Time,crown [degC]\n2024-05-01,23:59:30,25\n2024-05-02,00:00:40.5,26.5\n": [
+        "times are those of 'Date' and 'Time', counted from the run's first row"
+    ],
+    "Datum;Uhrzeit;crown [°C]\n30.04.2024;9:59:30;25,0\n30.04.2024;10:00:40,5;26,5\n": [
+        "times are those of 'Datum' and 'Uhrzeit', counted from the run's first row",
+        "dates are day.month.year",
+    ],
+    "Timestamp,crown [degC]\n30.04.2024 9:59:30,25\n30.04.2024 10:00:40.5,26.5\n": ["dates are day.month.year"],
+    "Timestamp,crown [degC]\n2024/04/30 09:59:30,25\n2024/04/30 10:00:40.5,26.5\n": [],
+    "Zeit [s];crown [°C]\n0;25,0\n70,5;26,5\n": ["times are those of 'Zeit [s]'"],
+    "temps [s],crown [degC]\n0,25\n70.5,26.5\n": ["times are those of 'temps [s]'"],
+    "Elapsed (min),crown [degC]\n0,25\n1.175,26.5\n": ["times are those of 'Elapsed (min)'"],
+    "Time/s,crown °C\n0,25\n70.5,26.5\n": ["units without brackets: crown in degC"],
+    "time_s,crown_degF\n0,77\n70.5,79.7\n": ["units without brackets: crown in degF"],
+    "t / min,crown deg C\n0,25\n1.175,26.5\n": ["units without brackets: crown in degC"],
+    "time,crown\ns,degC\n0,25\n70.5,26.5\n": ["units are those of line 2"],
+    "time,speed,crown\n(min),(km/h),(K)\n0,30,298.15\n1.175,30,299.65\n": ["units are those of line 2"],
+    "Timestamp,n,crown\n,%,°C\n2024-05-01 12:00,1,25\n2024-05-01 12:01:10.5,2,26.5\n": ["units are those of line 2"],
+    "Time,crown [degC]\nhh:mm:ss,degC\n0:00:00,25\n0:01:10.5,26.5\n": [
+        "units are those of line 2",
+        "times in 'Time [hh:mm:ss]' are h:mm:ss, counted from the first row of the run (0:00:00)",
+    ],
+    "time [s],crown [degC]\n-5,OL\n0,25\n70.5,26.5\n75,open\n": ["no reading in 2 cells of 'crown [degC]' (OL, open)"],
+}
+
+
+@pytest.mark.parametrize("text", SAME)
+def test_the_same_run_in_the_words_of_loggers(tmp_path: Path, text: str) -> None:
+    run = only(tmp_path, text)
+    assert run.sensors == ("crown",)
+    assert list(run.notes) == SAME[text]
+    readings = run.temperatures["crown"]
+    assert readings.dropna().tolist() == pytest.approx([25.0, 26.5], abs=1e-9)
+    assert run.times[readings.notna()].tolist() == pytest.approx([0.0, 70.5], abs=1e-9)
+
+
+#: Text -> words of the error: each may mean two things, or nothing.
+TWO_MEANINGS = {
+    "time,crown [degC]\n12:30,25\n12:31,26\n": "'time' begins with '12:30', which may be h:mm or mm:ss; say which",
+    "Date,Time,crown [degC]\n05/01/2024,12:30:00,25\n": "'05/01/2024 12:30:00' is not a timestamp",
+    "Date,time [s],crown [degC]\n2024-05-01,0,25\n": "'Date' has no unit",
+    "time [s],crown [degC]\n0:00:01,25\n": "'0:00:01' is not a number",
+    "time [mm:ss],crown [degC]\n0:00:01,25\n": "'0:00:01' is not a time like mm:ss",
+    "time,crown [degC]\n0:00:01,25\n12,26\n": "line 3, column 'time': '12' is not a time like h:mm:ss",
+    "time,crown [degC]\n0:00:01,25\n,26\n": "line 3, column 'time': the cell is empty",
+    "time,crown [degC]\n0:00:61,25\n": "begins with '0:00:61'",
+    "time,crown [degC]\n9:30:01 PM,25\n": "begins with '9:30:01 PM'",
+    "time [s],crown C\n0,25\n": "'crown C' has no unit",
+    "time min,crown [degC]\n0,25\n": "no time column",
+    "time,crown\ns,mV\n0,25\n": "unknown temperature unit 'mV'",
+    "time [s],crown [degC]\ns,F\n0,25\n": "line 2: column 'crown [degC]' has another unit, 'F', in a row of units",
+    "time,crown\n,x\n0,25\n": "'time' has no unit",
+    "time [s],crown [degC]\n0,25\n1,-9999\n": "-9999 degC is below absolute zero",
+    "Zeit [s],Temps [s],crown [degC]\n0,0,25\n": "two time columns, 1 and 2; ignore one of them",
+}
+
+
+@pytest.mark.parametrize("text", TWO_MEANINGS)
+def test_what_may_mean_two_things_is_refused(tmp_path: Path, text: str) -> None:
+    assert TWO_MEANINGS[text] in refused(tmp_path, text)
+
+
+def test_an_elapsed_time_keeps_its_start(tmp_path: Path) -> None:
+    text = "{},crown [degC]\n0:05:00,25\n0:05:10,26\n"
+    assert only(tmp_path, text.format("elapsed time")).times.tolist() == [300.0, 310.0]
+    assert only(tmp_path, text.format("time")).times.tolist() == [0.0, 10.0]
+    assert only(tmp_path, text.format("time"), rename={"time": "elapsed time"}).times.tolist() == [300.0, 310.0]
+    assert only(tmp_path, text.format("time"), time_offset=300.0).times.tolist() == [300.0, 310.0]
+
+
+def test_every_run_counts_from_its_first_row(tmp_path: Path) -> None:
+    text = "time,run,crown [degC]\n9:00:00,a,25\n9:00:02.75,a,26\n10:00:00,b,25\n"
+    first, second = read_table(table(tmp_path, text))
+    assert first.times.tolist() == [0.0, 2.75]
+    assert second.times.tolist() == [0.0]
+
+
+def test_a_clock_goes_over_midnight_where_its_step_stays(tmp_path: Path) -> None:
+    text = "time,crown [degC]\n23:59:50,25\n23:59:55,26\n0:00:00,27\n0:00:05,28\n"
+    run = only(tmp_path, text)
+    assert run.times.tolist() == [0.0, 5.0, 10.0, 15.0]
+    assert run.notes[-1] == "run 'logger' passes midnight"
+
+
+@pytest.mark.parametrize(
+    "times",
+    [
+        ["23:59:50", "23:59:55", "0:10:00"],  # Another run, or a pause.
+        ["12:00:00", "12:00:05", "11:00:10"],  # A clock that is put back.
+        ["23:59:50", "0:00:00"],  # No other step.
+        ["25:00:00", "25:00:10", "1:00:20"],  # No clock has 25 hours.
+    ],
+)
+def test_a_clock_that_falls_back_is_refused(tmp_path: Path, times: list[str]) -> None:
+    rows = "".join(f"{time},25\n" for time in times)
+    words = refused(tmp_path, f"time,crown [degC]\n{rows}")
+    assert "time runs back from" in words
+    assert "over midnight, give the dates, too" in words
+
+
+def test_names_of_times_and_runs_are_given_by_rename(tmp_path: Path) -> None:
+    text = "Bank 3\nDauer [min];Versuch;T1 [°C]\n0;a;25\n1;a;26\n0;b;30\n"
+    names = {"Dauer": "time", "Versuch": "run", "T1": "crown"}
+    first, second = read_table(table(tmp_path, text), rename=names)
+    assert (first.name, second.name) == ("a", "b")
+    assert first.times.tolist() == [0.0, 60.0]
+    assert first.sensors == ("crown",)
+    assert first.notes == ()
+    assert "rename a time column of another name to 'time'" in refused(tmp_path, text)
+
+
+def test_rename_gives_a_time_its_unit(tmp_path: Path) -> None:
+    text = "Dauer,crown [degC]\n{},25\n{},26\n"
+    assert only(tmp_path, text.format(0, 1), rename={"Dauer": "time [min]"}).times.tolist() == [0.0, 60.0]
+    run = only(tmp_path, text.format("00:10", "75:20"), rename={"Dauer": "elapsed time [mm:ss]"})
+    assert run.times.tolist() == [10.0, 4520.0]
+    two = refused(tmp_path, "Dauer [s],crown [degC]\n0,25\n", rename={"Dauer": "time [min]"})
+    assert "logger.csv: rename: column 'Dauer [s]' has its unit; rename it to 'time' instead of 'time [min]'" in two
+
+
+def test_a_column_called_time_goes_before_other_words(tmp_path: Path) -> None:
+    run = only(tmp_path, "Elapsed [s],Timestamp,crown [degC]\n7,2024-05-01T12:00:00,25\n9,2024-05-01T12:00:03,26\n")
+    assert run.times.tolist() == [0.0, 3.0]
+    assert run.channels == ("Elapsed [s]",)
+
+
+def test_a_row_of_units_may_name_what_is_ignored(tmp_path: Path) -> None:
+    run = only(tmp_path, "time,crown,switch\ns,degC,on/off\n0,25,1\n", ignore=["switch"])
+    assert run.temperatures["crown"].tolist() == [25.0]
+
+
+def test_a_second_logger_keeps_the_notes_of_both(tmp_path: Path) -> None:
+    first = only(tmp_path, "time/s,crown °C\n0,25\n")
+    second = only(tmp_path, "Zeit [s],bead [degC]\n0,25\n")
+    assert first.joined(second).notes == ("units without brackets: crown in degC", "times are those of 'Zeit [s]'")
+
+
+def test_lines_below_a_row_of_units_keep_their_numbers(tmp_path: Path) -> None:
+    """Lines are counted as in the file, below a row of units, too."""
+    words = refused(tmp_path, "# bench\ntime,crown\ns,degC\n0,25\n1,warm\n")
+    assert re.search(r"line 5, column 'crown \[degC\]': 'warm' is not a number", words)
