@@ -45,6 +45,7 @@ def test_every_shipped_card_is_good(capfd: pytest.CaptureFixture[str]) -> None:
     [
         ("name,Lab 3\ntime [s],crown [degC]\n0,25\n", "a measured table, 1 run, 1 reading of crown"),
         ("name,Lab 3\n\ntime;crown [degC]\n2024-05-01T12:30:01;25\n", "a measured table, 1 run"),
+        ("Zeit;crown\nmin;°C\n0;25\n", "crown; units are those of line 2; times are those of 'Zeit [min]'"),
         ('"name","drive.load [lbf]","note"\n"t","1","time"\n', "a table of 1 case"),
     ],
 )

@@ -234,7 +234,28 @@ def test_wrong_rename_says_the_nearest(tmp_path):
 
 
 CELL = st.one_of(
-    st.sampled_from(["", "-", "NaN", "inf", "1e400", "25", "25,5", "-3", '"', "run", "time [s]", "a [K]", "#", "٣"]),
+    st.sampled_from(
+        [
+            "",
+            "-",
+            "NaN",
+            "inf",
+            "1e400",
+            "25",
+            "25,5",
+            "-3",
+            '"',
+            "run",
+            "time [s]",
+            "a [K]",
+            "#",
+            "٣",
+            "s",
+            "°C",
+            "OL",
+            "0:00:01",
+        ]
+    ),
     st.floats(allow_nan=True, allow_infinity=True).map(repr),
     st.text(max_size=6),
 )

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from tyrefem.cli import main
-from tyrefem.errors import InputError
+from tyrefem.errors import InputError, ResultWarning
 from tyrefem.heating_test.files import find, tables
 from tyrefem.rig import load, read
 
@@ -49,3 +49,11 @@ def test_all_wrong_columns_are_named_at_once(rig: Path) -> None:
         read(card, [path])
     with pytest.raises(InputError, match=r"columns 'outr' \(did you mean 'outer'\?\), 'x' are no sensors of the rig"):
         read(card, [path], ["outer", "inner"])
+
+
+def test_how_a_table_was_read_is_a_warning(rig: Path) -> None:
+    card, _ = load(rig)
+    path = rig / "low.csv"
+    path.write_text(path.read_text(encoding="utf-8").replace("time [s]", "Zeit/s"), encoding="utf-8")
+    with pytest.warns(ResultWarning, match=r"low\.csv: times are those of 'Zeit/s'"):
+        read(card, [path])

@@ -33,8 +33,8 @@ def read_table(
 
     The heading has ``time [s]`` (or min, h, ms), perhaps ``run``, and one column per sensor with its unit:
     ``crown [degC]``, ``[degF]`` or ``[K]``. Timestamps, and clock times as h:mm:ss, count from the first row of their
-    run. Units may stand in a row of their own. Columns in
-    a unit of pressure, speed, force, length or power are not sensors and are left out (`MeasuredRun.channels`).
+    run. Units may stand in a row of their own. Columns in a unit of pressure, speed, force, length or
+    power are not sensors and are left out (`MeasuredRun.channels`).
     Comma, semicolon or tab between columns; decimal comma or point; UTF-8, UTF-16 or Latin-1. Empty, ``NaN``, ``-``,
     ``--`` = no reading. ``#`` and ``//`` begin a comment.
 
@@ -131,7 +131,7 @@ class TableLines:
         rows_of_runs = _rows_of_runs(None if columns.run is None else cells[columns.run], lines, file, self.name)
         source = None if self.in_memory else file
         times_of_runs, notes = time.of_runs(lines, rows_of_runs, time_offset, file)
-        notes = (*lines.notes, *notes, *_notes_on_sensors(sensors, lines.heading, cells))
+        notes = (*lines.notes, *notes, *_notes_on_sensors(sensors, lines.heading, cells, readings))
         for name, times in times_of_runs.items():
             rows = rows_of_runs[name]
             held = {sensor: values[rows] for sensor, values in readings.items() if np.isfinite(values[rows]).any()}
@@ -223,7 +223,10 @@ def _columns(lines: Lines, rename: dict[str, str], ignore: frozenset[str], file:
 
 
 def _notes_on_sensors(
-    sensors: Iterable[Heading], heading: Sequence[str], cells: Sequence[Sequence[str]]
+    sensors: Iterable[Heading],
+    heading: Sequence[str],
+    cells: Sequence[Sequence[str]],
+    readings: Mapping[str, NDArray[np.float64]],
 ) -> tuple[str, ...]:
     """Notes on units without brackets, and on words for a broken thermocouple."""
     notes = []
@@ -232,7 +235,8 @@ def _notes_on_sensors(
         names = ", ".join(f"{parts(heading[sensor.column])[0][:60]} in {sensor.unit}" for sensor in bare)
         notes.append(f"units without brackets: {names}")
     for sensor in sensors:
-        broken = [cell for cell in cells[sensor.column] if cell.lower() in BROKEN]
+        without = (cells[sensor.column][row] for row in np.flatnonzero(np.isnan(readings[sensor.name])))
+        broken = [cell for cell in without if cell.lower() in BROKEN]
         if broken:
             words = ", ".join(dict.fromkeys(broken))
             notes.append(f"no reading in {counted(len(broken), 'cell')} of '{heading[sensor.column][:60]}' ({words})")
