@@ -235,7 +235,7 @@ def _notes_on_sensors(
         names = ", ".join(f"{parts(heading[sensor.column])[0][:60]} in {sensor.unit}" for sensor in bare)
         notes.append(f"units without brackets: {names}")
     for sensor in sensors:
-        without = (cells[sensor.column][row] for row in np.flatnonzero(np.isnan(readings[sensor.name])))
+        without = (cells[sensor.column][row] for row in np.flatnonzero(np.isnan(readings[sensor.name])).tolist())
         broken = [cell for cell in without if cell.lower() in BROKEN]
         if broken:
             words = ", ".join(dict.fromkeys(broken))
