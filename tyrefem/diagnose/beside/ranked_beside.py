@@ -30,6 +30,8 @@ STRAIN, RENEWED = 2.5, 2
 UNFINISHED = 2
 #: A strain law whose fits keep a misfit above this times the number of readings is not searched for further sets.
 NEAR = 10.0
+#: Sensitivities are taken again where a fit has changed the readings by more than this share of their rise.
+CHANGED = 0.15
 #: Beside a discrepancy of this size noise explains the misfit, so that no larger one is tried.
 USUAL_P = 0.01
 
@@ -84,7 +86,20 @@ class RankedBeside(Brief):
     @property
     def far(self) -> bool:
         """Whether the fits lie far from the study, where sensitivities differ from those at x = 0: priors are wide."""
-        return bool(self.discrepancy.nuisance) and self.discrepancy.width > 1.0 and self.discrepancy.size == 0.0
+        return self._by_itself and self.discrepancy.width > 1.0
+
+    @property
+    def _by_itself(self) -> bool:
+        """Whether the discrepancy has unknowns, and no errors of the readings."""
+        return bool(self.discrepancy.nuisance) and self.discrepancy.size == 0.0
+
+    @property
+    def change(self) -> float:
+        """Root mean square of what the best fit has changed in the readings, as a share of that of their rise."""
+        computed, fitted = self.residuals.computed, self.best.computed
+        change = np.concatenate([(fitted[number] - computed[number]).ravel() for number in self.residuals.fitted])
+        rise = np.concatenate([(computed[number] - np.min(computed[number])).ravel() for number in self.residuals.fitted])
+        return float(np.linalg.norm(change) / np.linalg.norm(rise))
 
     @property
     def near(self) -> bool:
@@ -122,9 +137,9 @@ class RankedBeside(Brief):
         ahead = sorted(estimates, key=lambda members: -estimates[members])
         near = [members for members in ahead if estimates[members] > estimates[ahead[0]] - FAR]
         chosen = self._deciding(near)[: most or residuals.settings.beside_sets]
-        if () in near and () not in chosen:
+        if () not in chosen:
             chosen.append(())
-        restarted = [()] if from_origin and () in chosen else []
+        restarted = [()] if from_origin else []
         self._take(
             fitted_beside(
                 problem.predictions,
@@ -159,7 +174,14 @@ class RankedBeside(Brief):
 
         Rivals of the best set are then continued; if one of them gets ahead, once more. At last every effect that
         would be named is held against the best set without it.
+
+        Estimates from sensitivities at x = 0 do not count where the fits have changed the readings much: beside energy
+        modes of 26 % that of a tread's slip was 20 nats below its fit.
         """
+        if self._by_itself and self._here is None and self.near and self.change > CHANGED:
+            self._renew()
+            self.estimates.clear()
+            self._estimate()
         self._search()
         leading = self.best.members
         if self._continue_ended() and self.best.members != leading:
