@@ -1,4 +1,4 @@
-"""Beside a discrepancy that changes the readings much: effects are searched with sensitivities at the fit, not x = 0."""
+"""Beside a discrepancy that changes the readings much, effects are searched with sensitivities at the fit."""
 
 from __future__ import annotations
 

@@ -96,9 +96,10 @@ class RankedBeside(Brief):
     @property
     def change(self) -> float:
         """Root mean square of what the best fit has changed in the readings, as a share of that of their rise."""
-        computed, fitted = self.residuals.computed, self.best.computed
-        change = np.concatenate([(fitted[number] - computed[number]).ravel() for number in self.residuals.fitted])
-        rise = np.concatenate([(computed[number] - np.min(computed[number])).ravel() for number in self.residuals.fitted])
+        before = [self.residuals.computed[number] for number in self.residuals.fitted]
+        after = [self.best.computed[number] for number in self.residuals.fitted]
+        change = np.concatenate([(there - here).ravel() for there, here in zip(after, before, strict=True)])
+        rise = np.concatenate([(here - np.min(here)).ravel() for here in before])
         return float(np.linalg.norm(change) / np.linalg.norm(rise))
 
     @property
