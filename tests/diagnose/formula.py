@@ -51,6 +51,9 @@ class Formula:
     def of(self, method: str, questions: Sequence[tuple[Any, ...]], tick: object = None) -> list[Array]:
         return [self._answer(method, question) for question in questions]
 
+    def together(self, questions: Sequence[tuple[str, tuple[Any, ...]]], tick: object = None) -> list[Array]:
+        return [self._answer(method, question) for method, question in questions]
+
     def _answer(self, method: str, question: tuple[Any, ...]) -> Array:
         # A number of a card and an effect beyond it add up.
         values: dict[str, float] = {}
