@@ -98,6 +98,7 @@ def new(
     place_of_output(target.parent)
     files = {target: source, **_copies(source, target, _companions(kind, source), force=force)}
     first_line, note = _of_the_other_tyre(kind, source)
+    note = "; ".join(filter(None, (note, _meant_size(kind, name, copy_of))))
     with results_file(target, (".toml",), force=force), interruption_delayed():
         for place, file in files.items():
             with atomic_path(place) as temporary:
@@ -127,6 +128,19 @@ def _copies(source: Path, target: Path, names: Iterable[Path], *, force: bool) -
             message = f"would be overwritten by that of {source.parent.name}; choose another folder, or replace it with"
             raise InputError(f"{message} --force", file=place, field="--out")
     return copies
+
+
+def _meant_size(kind: str, name: str, copy_of: str | None) -> str:
+    """A note on a card whose name reads like a road tyre's size, though it is a copy of another tyre's.
+
+    >>> _meant_size("study", "205-55-16", None)
+    "'205-55-16' is a name here; a study of that size: tyrefem new study 205/55R16"
+    """
+    match = re.fullmatch(r"(\d{3})[-_.]?(\d{2})[-_.]?[rR]?[-_.]?(\d{2})", name)
+    if match is None or kind == "material" or copy_of is not None:
+        return ""
+    size = f"{match[1]}/{match[2]}R{match[3]}"
+    return f"'{name}' is a name here; a {kind} of that size: tyrefem new {kind} {size}"
 
 
 def _of_the_other_tyre(kind: str, source: Path) -> tuple[str, str]:
