@@ -57,6 +57,18 @@ def test_a_loggers_table_is_no_table_of_cases(
     assert words in capfd.readouterr().out
 
 
+def test_a_table_with_other_names_of_columns(
+    here: Path, refused: Callable[..., str], capfd: pytest.CaptureFixture[str]
+) -> None:
+    (here / "logger.csv").write_text("Dauer,T1 [degC],room [degC]\n0:00,20,20\n0:30,21,20\n", encoding="utf-8")
+    renamed = ["--rename", "Dauer=time [mm:ss]", "--rename", "T1=crown", "--ignore", "room"]
+    assert main(["check", "logger.csv", *renamed]) == 0
+    assert "1 run, 2 readings of crown" in capfd.readouterr().out
+    assert "--ignore: goes with a measured table" in refused("check", "nasa-tread", "--ignore", "room")
+    (here / "own.py").write_text("", encoding="utf-8")
+    assert "--rename: goes with a measured table" in refused("check", "own.py", "--rename", "T1=crown")
+
+
 def test_a_run_that_was_not_measured_is_named() -> None:
     """Its effects would be left out without a word."""
     assert check_study(study("example-validation", {"run": "run-2"})) == 3

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from tyrefem.brief import counted
-from tyrefem.cli.common import fail, warn
+from tyrefem.cli.common import IgnoreOption, RenameOption, fail, renamed, warn
 from tyrefem.cli.progress import progress
 from tyrefem.cli.shell import answer_with, say
 from tyrefem.errors import InputError, nearest
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 #: Kinds of cards that may be checked by name, in this order.
 KINDS = ("study", "sweep", "section", "material")
+OF_TABLES = "goes with a measured table"
 
 
 def check(
@@ -32,13 +33,17 @@ def check(
     study: Annotated[
         str | None, typer.Option("--study", metavar="STUDY", help="Of plugins: the study in which they are tried.")
     ] = None,
+    ignore: IgnoreOption = None,
+    rename: RenameOption = None,
 ) -> None:
     """Check a file without running it; report its first error.
 
     A Python file is loaded, and the contracts of its effects, laws and answers are tried in short runs.
     """
-    path = Path(file)
+    path, of_table = Path(file), "--rename" if rename else "--ignore" if ignore else ""
     if path.suffix == ".py" and path.is_file():
+        if of_table:
+            raise InputError(OF_TABLES, field=of_table)
         _plugins(path, study)
         return
     if study is not None:
@@ -59,8 +64,11 @@ def check(
             hint = nearest(file, known)
             raise InputError(f"no such file, and no study, sweep, section or material of that name{hint}", file=file)
         path = known[file]
+    is_card = path.suffix.lower() == ".toml"
+    if is_card and of_table:
+        raise InputError(OF_TABLES, field=of_table)
     with progress(f"{path.name}: checked"):
-        words = _card(path) if path.suffix.lower() == ".toml" else _table(path)
+        words = _card(path) if is_card else _table(path, renamed(rename), ignore or [])
     answer_with({"file": path, "words": words})
     say(f"{path}: {words}")
 
@@ -81,15 +89,15 @@ def _plugins(path: Path, study: str | None) -> None:
     say(f"{path}: {words}")
 
 
-def _table(path: Path) -> str:
+def _table(path: Path, rename: dict[str, str], ignore: list[str]) -> str:
     from tyrefem.measured import read_table
     from tyrefem.measured.cases import looks_like_cases, read_cases
 
-    if looks_like_cases(path):
+    if not rename and not ignore and looks_like_cases(path):
         cases = read_cases(path)
         number = counted(len(cases), "case")
         return f"a table of {number}; to check their values, run 'tyrefem check' on the study that names it"
-    runs = read_table(path)
+    runs = read_table(path, rename=rename, ignore=ignore)
     sensors = sorted({sensor for run in runs for sensor in run.sensors})
     readings = sum(int(run.temperatures.notna().sum().sum()) for run in runs)
     channels = dict.fromkeys(heading for run in runs for heading in run.channels)
