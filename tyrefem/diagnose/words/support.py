@@ -27,11 +27,10 @@ def stated_words(d: DiagnosisData, members: Members, chance: float, text: str) -
     if least < ALONE:
         alone = f"without {_named(left)}, which alone {_tells(member, left)}"
         return f"{subject} only {percent(least)} probable {alone}; with all readings {text}"
-    where = f"without {_any_one(d)} (least without {_named(left)})"
-    lower = at_least(least)
+    where, lower = f"without {_any_one(d)}", at_least(least)
     if least >= chance or lower.removeprefix("at least ") == text.removeprefix("at least "):
         return f"{subject} {text} probable, also {where}"
-    return f"{subject} {lower} probable {where}; with all readings {text}"
+    return f"{subject} {lower} probable {where} (least without {_named(left)}); with all readings {text}"
 
 
 def alone_words(d: DiagnosisData, *, further: bool = False) -> tuple[str, ...]:
