@@ -135,7 +135,10 @@ def split(path: Path, rename: Mapping[str, str] | None = None) -> Lines:
 def _heading(content: list[tuple[int, str]], path: Path, rename: Mapping[str, str]) -> tuple[int, str]:
     """Index and delimiter of the line with a time column: the first of those of the lowest `_rank`."""
     best: tuple[int, int, str] | None = None
+    surest = 0 if rename else 2
     for position, (number, line) in enumerate(content[:LONGEST_PREAMBLE]):
+        if best is not None and best[0] <= surest:
+            break
         for delimiter in DELIMITERS:
             cells = _cells(line, delimiter, number, path, strict=False)
             for rank in (_rank(cell, rename) for cell in cells):
