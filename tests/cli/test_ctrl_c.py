@@ -67,7 +67,7 @@ def test_while_loading(here: Path, arguments: list[str]) -> None:
         (["export", NASA, "--workers", "1", "--set", "mesh.size=12 mm"], STEP),
         (
             ["isolability", "hidden-effect", "--workers", "1", "--set", "mesh.size=12 mm"],
-            "tyrefem.simulation.simulate:simulate:1",
+            "tyrefem.diagnose.forward.evaluations:Evaluations.together:1",
         ),
         (["rig", "simulate", "trtlab"], STEP),
         (["rig", "identify", "trtlab"], STEP),
