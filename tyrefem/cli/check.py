@@ -19,7 +19,6 @@ if TYPE_CHECKING:
 
 #: Kinds of cards that may be checked by name, in this order.
 KINDS = ("study", "sweep", "section", "material")
-OF_TABLES = "goes with a measured table"
 
 
 def check(
@@ -40,10 +39,9 @@ def check(
 
     A Python file is loaded, and the contracts of its effects, laws and answers are tried in short runs.
     """
-    path, of_table = Path(file), "--rename" if rename else "--ignore" if ignore else ""
+    path = Path(file)
     if path.suffix == ".py" and path.is_file():
-        if of_table:
-            raise InputError(OF_TABLES, field=of_table)
+        _refuse_names(rename, ignore)
         _plugins(path, study)
         return
     if study is not None:
@@ -65,12 +63,18 @@ def check(
             raise InputError(f"no such file, and no study, sweep, section or material of that name{hint}", file=file)
         path = known[file]
     is_card = path.suffix.lower() == ".toml"
-    if is_card and of_table:
-        raise InputError(OF_TABLES, field=of_table)
+    if is_card:
+        _refuse_names(rename, ignore)
     with progress(f"{path.name}: checked"):
         words = _card(path) if is_card else _table(path, renamed(rename), ignore or [])
     answer_with({"file": path, "words": words})
     say(f"{path}: {words}")
+
+
+def _refuse_names(rename: list[str] | None, ignore: list[str] | None) -> None:
+    """Raises InputError for names of columns: only a measured table has them."""
+    if rename or ignore:
+        raise InputError("goes with a measured table", field="--rename" if rename else "--ignore")
 
 
 def _plugins(path: Path, study: str | None) -> None:
