@@ -1,4 +1,4 @@
-"""The tables of hidden laws in docs/evidence/diagnosis.md, from the records of `missing_heat_laws.py`.
+"""The tables of hidden laws in docs/evidence/missing-heat.md, from the records of `missing_heat_laws.py`.
 
     python benchmarks/hidden_law_table.py [--records results/missing-heat-laws]
 
@@ -19,7 +19,7 @@ from typing import Any
 from tyrefem.diagnose.numbers import percent
 from tyrefem.output import atomic_path
 
-RECORDS, PAGE = Path("results/missing-heat-laws"), Path("docs/evidence/diagnosis.md")
+RECORDS, PAGE = Path("results/missing-heat-laws"), Path("docs/evidence/missing-heat.md")
 TABLE = Path("docs/evidence/tables/diagnosis-laws.csv")
 BEGIN, END = "<!-- hidden laws: written by benchmarks/hidden_law_table.py -->", "<!-- end of hidden laws -->"
 #: Deflection of `hidden-effect` at its rated load and pressure, m: the Payne-like loss refers to it.

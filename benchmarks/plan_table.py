@@ -1,4 +1,4 @@
-"""The table of docs/evidence/diagnosis.md on plans, from finished cases.
+"""The table of docs/evidence/plan.md on plans, from finished cases.
 
     python benchmarks/plan_table.py results/plan results/plan-four
 
@@ -22,7 +22,7 @@ from tyrefem.diagnose.blind.criteria import Rate
 from tyrefem.diagnose.verdicts.verdict import CONFOUNDED, IDENTIFIED
 from tyrefem.output import atomic_path
 
-PAGE, TABLE = Path("docs/evidence/diagnosis.md"), Path("docs/evidence/tables/diagnosis-plan-cases.csv")
+PAGE, TABLE = Path("docs/evidence/plan.md"), Path("docs/evidence/tables/diagnosis-plan-cases.csv")
 BEGIN, END = "<!-- plans: written by benchmarks/plan_table.py -->", "<!-- end of plans -->"
 #: Most further runs; runs that count where they do not give the name.
 MOST, NEVER = 2, 3

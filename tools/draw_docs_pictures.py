@@ -1,14 +1,17 @@
 """Draw the pictures of docs/ that no command draws (run from the root).
 
 `python tools/draw_docs_pictures.py [NAME ...]`: all of them, or some: modes, reduced-error, realtime-drive,
-realtime-step, realtime-certificate, cost, installed, construction-wrap, life-planes. Each takes less than a minute.
+realtime-step, realtime-certificate, cost, installed, construction-wrap, life-planes, hidden-laws, plan-shares. Each
+takes less than a minute.
 The other pictures are those of the commands that stand above them, of benchmarks/ and of tools/make_effects_page.py.
 """
 
 from __future__ import annotations
 
+import csv
 import io
 import os
+import re
 import sys
 import tempfile
 import time
@@ -272,10 +275,70 @@ def life_planes() -> Figure:
     return drawn
 
 
+def _table(name: str) -> list[dict[str, str]]:
+    with (Path("docs/evidence/tables") / f"{name}.csv").open(encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def hidden_laws() -> Figure:
+    """Exponents and times of hidden laws: how far those of the law and of the draft's fit are off, over their sd."""
+    number = re.compile(r"(?P<name>[a-z][a-z ]*) (?P<mean>-?[\d.]+) ± (?P<sd>[\d.]+)")
+    hidden_number = re.compile(r"(?P<name>[a-z][a-z ]*) (?P<mean>-?[\d.]+)")
+    names: list[str] = []
+    points: list[tuple[int, int, float]] = []
+    for row in _table("diagnosis-laws"):
+        hidden = {each["name"]: float(each["mean"]) for each in hidden_number.finditer(row["law: hidden values"])}
+        at = {name: len(names) + place for place, name in enumerate(hidden)}
+        names += [
+            f"{row['hidden']} {row['seed']}: {name.replace('slope of the loss over', 'loss over')}" for name in at
+        ]
+        for style, column in enumerate(("law: values", "draft: values")):
+            points += [
+                (style, at[each["name"]], (float(each["mean"]) - hidden[each["name"]]) / float(each["sd"]))
+                for each in number.finditer(row[column])
+            ]
+    drawn = figure(7.6, 0.19 * len(names) + 0.9)
+    axes = add_axes(drawn, 2.0, 0.5, 3.6, 0.19 * len(names) + 0.3)
+    axes.axvspan(-2, 2, color="0.92", zorder=0)
+    axes.axvline(0, color="0.6", lw=0.8)
+    for style, (words, marker) in enumerate((("law of the first diagnosis", "o"), ("fit of the draft effect", "s"))):
+        places = [(off, row) for kind, row, off in points if kind == style]
+        axes.plot(*zip(*places, strict=True), marker, ms=4, color=line_style(style)["color"], label=words)
+    axes.set_yticks(range(len(names)), names, fontsize=FONT - 1)
+    axes.set_ylim(len(names) - 0.5, -0.5)
+    axes.set_xlim(-4, 4)
+    axes.set_xlabel("found less hidden value [standard deviations]", fontsize=FONT)
+    tidy(axes)
+    axes.legend(fontsize=FONT - 1, loc="upper left", bbox_to_anchor=(1.01, 1.0), frameon=False)
+    return drawn
+
+
+def plan_shares() -> Figure:
+    """Share of confounded cases with the right name after one and two further runs, with 95 % intervals."""
+    from tyrefem.diagnose.blind.criteria import Rate
+
+    rows = [row for row in _table("diagnosis-plan-cases") if row["runs by plan"]]
+    drawn, axes = _axes("further runs", "cases with the right name [%]", width=3.6)
+    labels = []
+    for number, (column, words) in enumerate((("runs by plan", "by plan"), ("runs at random", "at random"))):
+        rates = [Rate(sum(row[column] in {str(n) for n in range(1, most + 1)} for row in rows), len(rows))
+                 for most in (1, 2)]  # fmt: skip
+        shares = np.array([[100 * rate.value, *(100 * x for x in rate.interval)] for rate in rates])
+        x, style = np.array([1.0, 2.0]) + 0.04 * (2 * number - 1), line_style(number)
+        axes.errorbar(
+            x, shares[:, 0], abs(shares[:, 1:] - shares[:, :1]).T, marker="o", ms=4, lw=1.2, capsize=3, **style
+        )
+        labels.append(Label(words, float(x[-1]), float(shares[-1, 0]), color=style["color"]))
+    axes.set(xlim=(0.7, 2.1), ylim=(0, 102), xticks=(1, 2))
+    line_ends(axes, labels, room=1.7)
+    return drawn
+
+
 DRAWN: dict[str, Callable[[], Figure]] = {
     "modes": modes, "reduced-error": reduced_error, "realtime-drive": realtime_drive, "realtime-step": realtime_step,
     "realtime-certificate": realtime_certificate, "cost": cost, "installed": installed,
-    "construction-wrap": construction_wrap, "life-planes": life_planes,
+    "construction-wrap": construction_wrap, "life-planes": life_planes, "hidden-laws": hidden_laws,
+    "plan-shares": plan_shares,
 }  # fmt: skip
 
 
