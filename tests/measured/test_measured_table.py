@@ -136,7 +136,7 @@ BAD = {
     ),
     "other dates": (
         "time,crown [degC]\n,1\n05/01/2024 12:30,25\n",
-        "line 1: 'time' begins with '05/01/2024 12:30', which is no timestamp like 2024-05-01T12:30:01",
+        "line 2, column 'time': '' is not a timestamp like 2024-05-01T12:30:01",
     ),
     "date and two numbers": ("Date,Time,crown [degC]\n2024-05-01,12:30,25\n", "which may be h:mm or mm:ss; say which"),
     "torque": (
@@ -167,7 +167,7 @@ BAD = {
     "duplicate time": (HEAD + "0,25,25\n1,25,25\n1,25,25\n", "lines 3 and 4: the same time"),
     "unsorted": (HEAD + "0,25,25\n2,25,25\n1,25,25\n", "lines 3 and 4: time runs back from 2 s to 1 s"),
     "empty sensor": (HEAD + "0,25,\n1,25,-\n", "column 'bead [degC]' has no reading"),
-    "too cold": (HEAD + "0,25,25\n1,25,-9999\n", "line 3, column 'bead [degC]': -9999 degC is below absolute"),
+    "too cold": (HEAD + "0,25,25\n1,25,-9998\n", "line 3, column 'bead [degC]': -9998 degC is below absolute"),
     "too cold in K": (
         "time [s],crown [K]\n0,-300\n",
         "line 2, column 'crown [K]': -573.15 degC is below absolute zero; leave the cell empty",
@@ -178,9 +178,9 @@ BAD = {
         "'crown [degC]'",
     ),
     "code of a cold end": (HEAD + "0,25,25\n1,-200,25\n", "line 3, column 'crown [degC]': -200 degC is below -90 degC"),
-    "code of a hot end": (HEAD + "0,25,999.9\n", "line 2, column 'bead [degC]': 999.9 degC is above 900 degC (an open"),
+    "code of a hot end": (HEAD + "0,25,1372\n", "line 2, column 'bead [degC]': 1372 degC is above 900 degC (an open"),
     "hot in degF": ("time [s],crown [degF]\n0,2501.6\n", "line 2, column 'crown [degF]': 1372 degC is above"),
-    "open thermocouple": (HEAD + "0,25,9999\n", "line 2, column 'bead [degC]': 9999 degC is above"),
+    "open thermocouple": (HEAD + "0,25,9999\n", "column 'bead [degC]' has no reading in any row"),
     "short row": (
         HEAD + "0,25,25\n1,25\n",
         "line 3: 2 cells, but the heading has 3 (a cell without a reading is empty, not left out)",

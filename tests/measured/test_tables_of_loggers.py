@@ -63,6 +63,18 @@ SAME = {
         "units are those of line 2",
         "times in 'Time [hh:mm:ss]' are h:mm:ss, counted from the first row of the run (0:00:00)",
     ],
+    "Time,crown [degC]\n11:59:30 AM,25\n12:00:40.5 pm,26.5\n": [
+        "times in 'Time' are h:mm:ss, counted from the first row of the run (11:59:30 AM)"
+    ],
+    "Timestamp,crown [degC]\n5/1/2024 9:59:30 PM,25\n5/1/2024 10:00:40.5 PM,26.5\n": [],
+    "Timestamp,crown [degC]\n4/30/2024 11:59:30 PM,25\n5/1/2024 12:00:40.5 AM,26.5\n": ["dates are month/day/year"],
+    "Date,Time,crown [degC]\n30/04/2024,23:59:30,25\n01/05/2024,00:00:40.5,26.5\n": [
+        "times are those of 'Date' and 'Time', counted from the run's first row",
+        "dates are day/month/year",
+    ],
+    "time [s],crown [degC]\n0,25\n10,-9999\n20,999.9\n70.5,26.5\n": [
+        "no reading in 2 cells of 'crown [degC]' (-9999, 999.9)"
+    ],
     "time [s],crown [degC]\n-5,OL\n0,25\n70.5,26.5\n75,open\n": ["no reading in 2 cells of 'crown [degC]' (OL, open)"],
 }
 
@@ -80,20 +92,24 @@ def test_the_same_run_in_the_words_of_loggers(tmp_path: Path, text: str) -> None
 #: Text -> words of the error: each may mean two things, or nothing.
 TWO_MEANINGS = {
     "time,crown [degC]\n12:30,25\n12:31,26\n": "'time' begins with '12:30', which may be h:mm or mm:ss; say which",
-    "Date,Time,crown [degC]\n05/01/2024,12:30:00,25\n": "'05/01/2024 12:30:00' is not a timestamp",
+    "Date,Time,crown [degC]\n05/01/2024,12:30:00,25\n05/02/2024,12:30:00,25\n": (
+        "the date in '05/01/2024 12:30:00' may be month/day/year or day/month/year; write dates like 2024-05-01"
+    ),
+    "Timestamp,crown [degC]\n31/31/2024 12:30:00,25\n": "'31/31/2024 12:30:00' is not a timestamp",
     "Date,time [s],crown [degC]\n2024-05-01,0,25\n": "'Date' has no unit",
     "time [s],crown [degC]\n0:00:01,25\n": "'0:00:01' is not a number",
     "time [mm:ss],crown [degC]\n0:00:01,25\n": "'0:00:01' is not a time like mm:ss",
     "time,crown [degC]\n0:00:01,25\n12,26\n": "line 3, column 'time': '12' is not a time like h:mm:ss",
     "time,crown [degC]\n0:00:01,25\n,26\n": "line 3, column 'time': the cell is empty",
     "time,crown [degC]\n0:00:61,25\n": "begins with '0:00:61'",
-    "time,crown [degC]\n9:30:01 PM,25\n": "begins with '9:30:01 PM'",
+    "time,crown [degC]\n13:30:01 PM,25\n": "begins with '13:30:01 PM'",
     "time [s],crown C\n0,25\n": "'crown C' has no unit",
     "time min,crown [degC]\n0,25\n": "no time column",
     "time,crown\ns,mV\n0,25\n": "unknown temperature unit 'mV'",
     "time [s],crown [degC]\ns,F\n0,25\n": "line 2: column 'crown [degC]' has another unit, 'F', in a row of units",
     "time,crown\n,x\n0,25\n": "'time' has no unit",
-    "time [s],crown [degC]\n0,25\n1,-9999\n": "-9999 degC is below absolute zero",
+    "time [s],crown [degC]\n0,25\n1,-300\n": "-300 degC is below absolute zero",
+    "time [s],crown [degC]\n0,25\n1,1372\n": "1372 degC is above 900 degC",
     "Zeit [s],Temps [s],crown [degC]\n0,0,25\n": "two time columns, 1 and 2; ignore one of them",
 }
 

@@ -1,6 +1,7 @@
 """Times as hours, minutes and seconds: ``12:30:01.5``.
 
 Two numbers, ``12:30``, may be hours and minutes or minutes and seconds: the heading must say which, as ``[mm:ss]``.
+``1:30 PM`` is 13:30:00.
 """
 
 from __future__ import annotations
@@ -27,7 +28,24 @@ _UNITS = {
     "h:mm": re.compile(r"h{1,2}:m(?:m|in)?", re.IGNORECASE),
     "mm:ss": re.compile(r"m(?:m|in)?:s{1,2}(?:[.,][s0fx]+)?", re.IGNORECASE),
 }
+_HALF_DAYS = re.compile(
+    r"(?P<before>|.*\s)(?P<h>0?[1-9]|1[0-2])(?P<rest>:[0-5]\d(?P<s>:[\d.,]+)?)\s*(?P<half>[ap])\.?m\.?",
+    re.ASCII | re.IGNORECASE,
+)
 _DAY = 86_400_000_000
+
+
+def in_24_hours(cell: str) -> str:
+    """A clock time with AM or PM, alone or behind a date, as h:mm:ss of the whole day; all else as it is.
+
+    >>> in_24_hours("1:30:01.5 pm"), in_24_hours("2024-05-01 12:05 AM"), in_24_hours("13:30")
+    ('13:30:01.5', '2024-05-01 00:05:00', '13:30')
+    """
+    match = _HALF_DAYS.fullmatch(cell)
+    if match is None:
+        return cell
+    hour = int(match["h"]) % 12 + (12 if match["half"].lower() == "p" else 0)
+    return f"{match['before']}{hour:02}{match['rest']}{'' if match['s'] else ':00'}"
 
 
 def form_of_unit(unit: str) -> str | None:

@@ -39,8 +39,12 @@ NO_READING = frozenset(("", "nan", "na", "n/a", "#n/a", "null", "none", "-", "--
 BROKEN = frozenset(("ol", "+ol", "-ol", "open", "over", "overload", "overrange", "over range"))
 
 
+#: Numbers of loggers for no reading, where they are beyond `COLDEST` or `HOTTEST`: -9999, 999.9.
+_NINES = re.compile(r"[-+]?9{3,}(?:[.,]9+)?(?:[.,]?0*)", re.ASCII)
+
+
 #: degC; range of readings at a tyre. No air at the ground was colder than -89 degC, and a brake disc glows at 900 degC;
-#: rubber chars at half of that. Loggers write codes beyond it (-200, 999.9, 1372, 9999) for an open thermocouple.
+#: rubber chars at half of that. Loggers write codes beyond it (-200, 1372, 9999) for an open thermocouple.
 COLDEST, HOTTEST = -90.0, 900.0
 ABSOLUTE_ZERO = -KELVIN
 _NUMBER = re.compile(r"[-+]?(?:\d+[.,]?\d*|[.,]\d+)(?:[eE][-+]?\d+)?", re.ASCII)
@@ -125,6 +129,15 @@ def check_decimal_mark(rows: Sequence[Sequence[str]], lines: Sequence[int], colu
                 f"mixes decimal points (line {point}) and decimal commas (line {comma}); use one of them",
                 file=file,
             )
+
+
+def is_mark(cell: str, degC: float) -> bool:
+    """Whether a cell is a logger's number for no reading: nines only, beyond what a thermocouple at a tyre can read.
+
+    >>> is_mark("-9999", -9999.0), is_mark("999.9", 999.9), is_mark("999", 537.2), is_mark("1372", 1372.0)
+    (True, True, False, False)
+    """
+    return not COLDEST <= degC <= HOTTEST and _NINES.fullmatch(cell) is not None
 
 
 def check_plausible(heading: Heading, degC: NDArray[np.float64], lines: Sequence[int], file: Path) -> None:

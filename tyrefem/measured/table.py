@@ -13,7 +13,16 @@ from numpy.typing import NDArray
 
 from tyrefem.brief import counted
 from tyrefem.errors import InputError
-from tyrefem.measured.columns import BROKEN, Heading, check_decimal_mark, check_plausible, numbers
+from tyrefem.measured.columns import (
+    COLDEST,
+    HOTTEST,
+    NO_READING,
+    Heading,
+    check_decimal_mark,
+    check_plausible,
+    is_mark,
+    numbers,
+)
 from tyrefem.measured.heading import in_brackets, is_channel, parts, temperature_unit
 from tyrefem.measured.lines import Lines, split
 from tyrefem.measured.names import ColumnNames, in_table_words, missing_columns_error
@@ -36,7 +45,7 @@ def read_table(
     run. Units may stand in a row of their own. Columns in a unit of pressure, speed, force, length or
     power are not sensors and are left out (`MeasuredRun.channels`).
     Comma, semicolon or tab between columns; decimal comma or point; UTF-8, UTF-16 or Latin-1. Empty, ``NaN``, ``-``,
-    ``--`` = no reading. ``#`` and ``//`` begin a comment.
+    ``--``, ``-9999`` = no reading. ``#`` and ``//`` begin a comment.
 
     Parameters
     ----------
@@ -228,7 +237,7 @@ def _notes_on_sensors(
     cells: Sequence[Sequence[str]],
     readings: Mapping[str, NDArray[np.float64]],
 ) -> tuple[str, ...]:
-    """Notes on units without brackets, and on words for a broken thermocouple."""
+    """Notes on units without brackets, and on words and numbers for a broken thermocouple."""
     notes = []
     bare = [sensor for sensor in sensors if in_brackets(heading[sensor.column])[1] is None]
     if bare:
@@ -236,7 +245,7 @@ def _notes_on_sensors(
         notes.append(f"units without brackets: {names}")
     for sensor in sensors:
         without = (cells[sensor.column][row] for row in np.flatnonzero(np.isnan(readings[sensor.name])).tolist())
-        broken = [cell for cell in without if cell.lower() in BROKEN]
+        broken = [cell for cell in without if cell.lower() not in NO_READING]
         if broken:
             words = ", ".join(dict.fromkeys(broken))
             notes.append(f"no reading in {counted(len(broken), 'cell')} of '{heading[sensor.column][:60]}' ({words})")
@@ -246,6 +255,9 @@ def _notes_on_sensors(
 def _readings(heading: Heading, cells: Sequence[str], lines: Lines, file: Path) -> NDArray[np.float64]:
     shown = lines.heading[heading.column]
     degC = heading.to_degC(numbers(cells, lines.numbers, shown, file, gaps=True))
+    for row in np.flatnonzero((degC < COLDEST) | (degC > HOTTEST)).tolist():
+        if is_mark(cells[row], degC[row]):
+            degC[row] = np.nan
     if not np.isfinite(degC).any():
         raise InputError(f"column '{shown[:60]}' has no reading in any row", file=file)
     check_plausible(heading, degC, lines.numbers, file)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -10,11 +11,27 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.errors import InputError
-from tyrefem.measured.clock import FORMS, clock_times, form_of_unit, has_three_numbers, may_be_clock, over_midnight
+from tyrefem.measured.clock import (
+    FORMS,
+    clock_times,
+    form_of_unit,
+    has_three_numbers,
+    in_24_hours,
+    may_be_clock,
+    over_midnight,
+)
 from tyrefem.measured.columns import is_number, numbers
 from tyrefem.measured.heading import TIME_UNITS, is_date, is_elapsed, is_time, parts, time_unit
 from tyrefem.measured.lines import Lines
-from tyrefem.measured.timestamps import are_timestamps, is_day_first, microseconds, stamped
+from tyrefem.measured.timestamps import (
+    DAY_FIRST,
+    MONTH_FIRST,
+    are_timestamps,
+    is_day_first,
+    is_slashed,
+    microseconds,
+    stamped,
+)
 
 #: s; 30 years. A larger time is a calendar time and needs ``time_offset``.
 LONGEST_TIME = 1e9
@@ -53,7 +70,7 @@ class TimeColumn:
             raise InputError(f"two time columns, {columns[0] + 1} and {columns[1] + 1}; ignore one of them")
         (column,) = columns
         text = headings[column]
-        unit, cells = parts(text)[1], [row[column] for row in rows[:100]]
+        unit, cells = parts(text)[1], [in_24_hours(row[column]) for row in rows[:100]]
         first = next(filter(None, cells), "")
         if are_timestamps(cells):
             return cls(text, column, STAMPED)
@@ -83,7 +100,7 @@ class TimeColumn:
             _check_longest(seconds, self.heading, file)
             times, notes = {name: seconds[rows] for name, rows in runs.items()}, self._notes(lines)
         else:
-            times, notes = self._counted(cells, lines, runs, file)
+            times, notes = self._counted([in_24_hours(cell) for cell in cells], lines, runs, file)
             times = {name: values + offset for name, values in times.items()}
         for name, values in times.items():
             _check_increasing(values, [lines.numbers[row] for row in runs[name]], name, file, self.unit in FORMS)
@@ -93,15 +110,16 @@ class TimeColumn:
         self, cells: list[str], lines: Lines, runs: Mapping[str, NDArray[np.intp]], file: Path
     ) -> tuple[dict[str, NDArray[np.float64]], tuple[str, ...]]:
         """Run -> s since its first row, or since the start for elapsed time; and notes."""
+        notes = list(self._notes(lines))
         if self.unit != STAMPED:
             counts = clock_times(cells, lines.numbers, self.heading, self.unit, file)
-        elif self.date is None:
-            counts = microseconds(cells, lines.numbers, self.heading, file)
         else:
-            stamps = [stamped(row[self.date], row[self.column]) for row in lines.rows]
-            counts = microseconds(stamps, lines.numbers, self._headings(lines), file)
+            if self.date is not None:
+                cells = [stamped(row[self.date], cell) for row, cell in zip(lines.rows, cells, strict=True)]
+            counts, order = self._of_stamps(cells, lines, runs, file)
+            notes += order
         has_day = self.unit in ("h:mm:ss", "h:mm") and not is_elapsed(self.heading)
-        times, notes = {}, list(self._notes(lines))
+        times = {}
         for name, rows in runs.items():
             of_run = over_midnight(counts[rows]) if has_day else counts[rows]
             if has_day and of_run[-1] != counts[rows][-1]:
@@ -109,6 +127,31 @@ class TimeColumn:
             start = 0 if self._is_elapsed_clock else of_run[0]
             times[name] = (of_run - start) / 1e6
         return times, tuple(notes)
+
+    def _of_stamps(
+        self, stamps: list[str], lines: Lines, runs: Mapping[str, NDArray[np.intp]], file: Path
+    ) -> tuple[NDArray[np.int64], tuple[str, ...]]:
+        """(n,) microseconds since the first timestamp; and a note if slashed dates can have only one order."""
+        where = lines.numbers, self._headings(lines), file
+        slashed = next(filter(is_slashed, stamps), None)
+        if slashed is None:
+            return microseconds(stamps, *where), ()
+        orders = {}
+        for order in (MONTH_FIRST, DAY_FIRST):
+            with suppress(InputError):
+                orders[order] = microseconds(stamps, *where, order)
+        if not orders:
+            return microseconds(stamps, *where), ()
+        counts, *others = orders.values()
+        if not others:
+            return counts, (f"dates are {next(iter(orders))}",)
+        if any((np.diff(counts[rows]) != np.diff(others[0][rows])).any() for rows in runs.values()):
+            raise InputError(
+                f"column '{where[1][:60]}': the date in {slashed[:40]!r} may be {MONTH_FIRST} or {DAY_FIRST}; write "
+                "dates like 2024-05-01",
+                file=file,
+            )
+        return counts, ()
 
     @property
     def _is_elapsed_clock(self) -> bool:
