@@ -1,4 +1,4 @@
-"""Cells as numbers: empty is no reading, decimal comma or point, all else an error with its line."""
+"""Columns of numbers: cells with decimal comma or point, empty for no reading; the readings of a sensor in degC."""
 
 from __future__ import annotations
 
@@ -10,45 +10,109 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.brief import counted
 from tyrefem.errors import InputError
+from tyrefem.measured.heading import in_brackets, parts
+from tyrefem.measured.lines import Lines
 from tyrefem.quantity import KELVIN
+
+Array = NDArray[np.float64]
+#: degC; range of readings at a tyre. No air at the ground was colder than -89 degC, and a brake disc glows at 900 degC;
+#: rubber chars at half of that. Loggers write codes beyond it (-200, 1372, 9999) for an open thermocouple.
+COLDEST, HOTTEST = -90.0, 900.0
+ABSOLUTE_ZERO = -KELVIN
+#: Numbers of loggers for no reading, where they are beyond `COLDEST` or `HOTTEST`: -9999, 999.9.
+_NINES = re.compile(r"[-+]?9{3,}(?:[.,]9+)?(?:[.,]?0*)", re.ASCII)
+#: Texts of loggers and spreadsheets for "no reading", in small letters.
+NO_READING = frozenset(("", "nan", "na", "n/a", "#n/a", "null", "none", "-", "--", "---"))
+#: Texts of loggers for a broken or missing thermocouple: no reading, too, which a note says.
+BROKEN = frozenset(("ol", "+ol", "-ol", "open", "over", "overload", "overrange", "over range"))
+_NUMBER = re.compile(r"[-+]?(?:\d+[.,]?\d*|[.,]\d+)(?:[eE][-+]?\d+)?", re.ASCII)
+_PLAIN = re.compile(r"[0-9.eE+\-\n]*")
 
 
 @dataclass(frozen=True)
-class Heading:
-    """A column: its name, its unit, and its index in the row."""
+class SensorColumn:
+    """A column of readings.
+
+    Parameters
+    ----------
+    name : of the sensor. unit : degC, degF or K. column : its index in the row. heading : as it stands in the table.
+    """
 
     name: str
     unit: str
     column: int
+    heading: str
 
-    def to_degC(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+    @property
+    def has_bare_unit(self) -> bool:
+        """Whether the unit stands in the heading without brackets."""
+        return in_brackets(self.heading)[1] is None
+
+    @property
+    def words(self) -> str:
+        """Name and unit: "crown in degC"."""
+        return f"{parts(self.heading)[0][:60]} in {self.unit}"
+
+    def cells(self, lines: Lines) -> list[str]:
+        """The column's cells."""
+        return [row[self.column] for row in lines.rows]
+
+    def to_degC(self, values: Array) -> Array:
         """Readings in this column's unit, converted to degC.
 
-        >>> Heading("crown", "degF", 1).to_degC(np.array([212.0])).tolist()
+        >>> SensorColumn("crown", "degF", 1, "crown [degF]").to_degC(np.array([212.0])).tolist()
         [100.0]
         """
         if self.unit == "degF":
             return (values - 32.0) / 1.8
         return values + ABSOLUTE_ZERO if self.unit == "K" else values
 
+    def readings(self, lines: Lines, file: Path) -> Array:
+        """(n,) degC; NaN where there is no reading.
 
-#: Texts of loggers and spreadsheets for "no reading", in small letters.
-NO_READING = frozenset(("", "nan", "na", "n/a", "#n/a", "null", "none", "-", "--", "---"))
-#: Texts of loggers for a broken or missing thermocouple: no reading, too, which a note says.
-BROKEN = frozenset(("ol", "+ol", "-ol", "open", "over", "overload", "overrange", "over range"))
+        Raises
+        ------
+        InputError : text; no reading in any row; below `COLDEST` or above `HOTTEST`.
+        """
+        cells = self.cells(lines)
+        degC = self.to_degC(numbers(cells, lines.numbers, self.heading, file, gaps=True))
+        beyond = np.flatnonzero((degC < COLDEST - 1e-9) | (degC > HOTTEST + 1e-9)).tolist()
+        wrong = next((row for row in beyond if not _NINES.fullmatch(cells[row])), None)
+        if wrong is not None:
+            place = _place(lines.numbers[wrong], f"{self.name} [{self.unit}]")
+            raise InputError(f"{place}: {degC[wrong]:g} degC {self._why_implausible(degC[wrong])}", file=file)
+        degC[beyond] = np.nan
+        if not np.isfinite(degC).any():
+            raise InputError(f"column '{self.heading[:60]}' has no reading in any row", file=file)
+        return degC
+
+    def notes(self, lines: Lines, readings: Array) -> tuple[str, ...]:
+        """A note on words and numbers for a broken thermocouple, if there are any."""
+        cells = self.cells(lines)
+        without = [cells[row] for row in np.flatnonzero(np.isnan(readings)).tolist()]
+        broken = [cell for cell in without if cell.lower() not in NO_READING]
+        if not broken:
+            return ()
+        words = ", ".join(dict.fromkeys(broken))
+        return (f"no reading in {counted(len(broken), 'cell')} of '{self.heading[:60]}' ({words})",)
+
+    def _why_implausible(self, degC: float) -> str:
+        """What is wrong with a reading, and what to do."""
+        written = degC - ABSOLUTE_ZERO
+        if self.unit == "K" and degC < COLDEST and COLDEST <= written <= HOTTEST:
+            return f"({written:g} K) is too cold; K is kelvin: a thermocouple of type K is written '{self.name} [degC]'"
+        what = f"is above {HOTTEST:g} degC (an open thermocouple?)"
+        if degC < COLDEST:
+            what = "is below absolute zero" if degC < ABSOLUTE_ZERO else f"is below {COLDEST:g} degC"
+        return f"{what}; leave the cell empty where there is no reading, or ignore the column"
 
 
-#: Numbers of loggers for no reading, where they are beyond `COLDEST` or `HOTTEST`: -9999, 999.9.
-_NINES = re.compile(r"[-+]?9{3,}(?:[.,]9+)?(?:[.,]?0*)", re.ASCII)
-
-
-#: degC; range of readings at a tyre. No air at the ground was colder than -89 degC, and a brake disc glows at 900 degC;
-#: rubber chars at half of that. Loggers write codes beyond it (-200, 1372, 9999) for an open thermocouple.
-COLDEST, HOTTEST = -90.0, 900.0
-ABSOLUTE_ZERO = -KELVIN
-_NUMBER = re.compile(r"[-+]?(?:\d+[.,]?\d*|[.,]\d+)(?:[eE][-+]?\d+)?", re.ASCII)
-_PLAIN = re.compile(r"[0-9.eE+\-\n]*")
+def bare_units(sensors: Sequence[SensorColumn]) -> tuple[str, ...]:
+    """A note on units without brackets, if there are any."""
+    bare = [sensor.words for sensor in sensors if sensor.has_bare_unit]
+    return (f"units without brackets: {', '.join(bare)}",) if bare else ()
 
 
 def numbers(cells: Sequence[str], lines: Sequence[int], column: str, file: Path, *, gaps: bool) -> NDArray[np.float64]:
@@ -129,35 +193,3 @@ def check_decimal_mark(rows: Sequence[Sequence[str]], lines: Sequence[int], colu
                 f"mixes decimal points (line {point}) and decimal commas (line {comma}); use one of them",
                 file=file,
             )
-
-
-def is_mark(cell: str, degC: float) -> bool:
-    """Whether a cell is a logger's number for no reading: nines only, beyond what a thermocouple at a tyre can read.
-
-    >>> is_mark("-9999", -9999.0), is_mark("999.9", 999.9), is_mark("999", 537.2), is_mark("1372", 1372.0)
-    (True, True, False, False)
-    """
-    return not COLDEST <= degC <= HOTTEST and _NINES.fullmatch(cell) is not None
-
-
-def check_plausible(heading: Heading, degC: NDArray[np.float64], lines: Sequence[int], file: Path) -> None:
-    """Raise an error for readings that no thermocouple at a tyre can have.
-
-    Raises
-    ------
-    InputError : below `COLDEST` or above `HOTTEST`; the message has line, column and value.
-    """
-    for index in np.flatnonzero((degC < COLDEST - 1e-9) | (degC > HOTTEST + 1e-9))[:1]:
-        value, place = degC[index], _place(lines[index], f"{heading.name} [{heading.unit}]")
-        raise InputError(f"{place}: {value:g} degC {_why_implausible(heading, value)}", file=file)
-
-
-def _why_implausible(heading: Heading, degC: float) -> str:
-    """What is wrong with a reading, and what to do."""
-    written = degC - ABSOLUTE_ZERO
-    if heading.unit == "K" and degC < COLDEST and COLDEST <= written <= HOTTEST:
-        return f"({written:g} K) is too cold; K is kelvin: a thermocouple of type K is written '{heading.name} [degC]'"
-    what = f"is above {HOTTEST:g} degC (an open thermocouple?)"
-    if degC < COLDEST:
-        what = "is below absolute zero" if degC < ABSOLUTE_ZERO else f"is below {COLDEST:g} degC"
-    return f"{what}; leave the cell empty where there is no reading, or ignore the column"
