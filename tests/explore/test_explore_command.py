@@ -9,6 +9,7 @@ import pytest
 
 from tyrefem.api import Study, study
 from tyrefem.cli import main
+from tyrefem.reports.explore_link import explore_link
 
 RANGES = ("--vary", "drive.speed=15 mph:20 mph", "--limit", "hottest_degC<60", "--tolerance", "1 K", "--workers", "1")
 
@@ -79,3 +80,19 @@ def test_reports_link_to_the_page_or_name_the_command(small: Study, tmp_path: Pa
     design = short.sweep({"drive.speed": ["10 mph", "20 mph"]}, answers=["hottest_degC"])
     page = design.save(tmp_path / f"{small.name}-sweep") / "sweep.html"
     assert f'<a href="../{small.name}-explore.html">' in page.read_text(encoding="utf-8")
+
+
+def test_the_command_names_the_study_of_the_report(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A study elsewhere that has the name of a shipped one goes by its path, and blanks are quoted."""
+    monkeypatch.chdir(tmp_path)
+    shipped = study("nasa-22x5.5-8pr")
+    mine = tmp_path / "my tyres" / "nasa-22x5.5-8pr" / "study.toml"
+    mine.parent.mkdir(parents=True)
+    mine.write_bytes(Path(str(shipped.file)).read_bytes())
+    for one, command in (
+        (shipped, "tyrefem explore nasa-22x5.5-8pr"),
+        (study(str(mine)), "tyrefem explore 'my tyres/nasa-22x5.5-8pr/study.toml'"),
+    ):
+        link = explore_link(one, tmp_path / "report.html")
+        assert link is not None
+        assert link.command == command

@@ -198,3 +198,40 @@ def test_lines_below_a_row_of_units_keep_their_numbers(tmp_path: Path) -> None:
     """Lines are counted as in the file, below a row of units, too."""
     words = refused(tmp_path, "# bench\ntime,crown\ns,degC\n0,25\n1,warm\n")
     assert re.search(r"line 5, column 'crown \[degC\]': 'warm' is not a number", words)
+
+
+def test_a_column_of_words_may_name_the_runs(tmp_path: Path) -> None:
+    text = "time [s];Versuch;crown [degC]\n0;A;25\n60;A;26\n0;B;25\n"
+    assert "'Versuch' has words; if they name the runs, it needs `rename` to run" in refused(tmp_path, text)
+    assert "has no unit" in refused(tmp_path, text.replace("A", "1").replace("B", "2"))
+
+
+def warming(readings: dict[int, float]) -> str:
+    """A table of a sensor that warms by 1 K in 20 s, with other readings at some rows."""
+    rows = [f"{20 * row},{readings.get(row, 25.0 + row)}" for row in range(24)]
+    return "time [s],crown [degC]\n" + "\n".join(rows) + "\n"
+
+
+@pytest.mark.parametrize(
+    ("readings", "note"),
+    [
+        pytest.param({}, [], id="warming"),
+        pytest.param(dict.fromkeys(range(5, 24), 60.0), [], id="a step"),
+        pytest.param({5: 25.0, 6: 24.0, 7: 23.0}, [], id="a dip of three readings"),
+        pytest.param({4: 32.0}, [], id="3 K of noise"),
+        pytest.param(
+            {4: 62.5},
+            ["1 reading of 'crown [degC]' is 33.5 K off the readings before and after (line 6): empty the cell if the "
+             "logger is wrong"],
+            id="one spike",
+        ),
+        pytest.param(
+            {4: 62.5, 8: 20.0},
+            ["2 readings of 'crown [degC]' are up to 33.5 K off the readings before and after (lines 6, 10): empty the "
+             "cells if the logger is wrong"],
+            id="two spikes",
+        ),
+    ],
+)  # fmt: skip
+def test_spikes_of_a_logger_have_a_note(tmp_path: Path, readings: dict[int, float], note: list[str]) -> None:
+    assert list(only(tmp_path, warming(readings)).notes) == note

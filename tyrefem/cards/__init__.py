@@ -183,11 +183,24 @@ def read_toml(path: str | Path) -> dict[str, Any]:
         stat = path.stat()
         return copy.deepcopy(_parsed(path.absolute(), stat.st_mtime_ns, stat.st_size, stat.st_ino))
     except tomllib.TOMLDecodeError as error:
-        raise InputError(f"not valid TOML: {error}", file=path) from None
+        raise InputError(f"not valid TOML: {error}{_unquoted(path, str(error))}", file=path) from None
     except UnicodeDecodeError:
         raise InputError("not a text file in UTF-8", file=path) from None
     except OSError as error:
         raise InputError(f"cannot be read: {error.strerror or error}", file=path) from None
+
+
+def _unquoted(path: Path, message: str) -> str:
+    """What to do about a key with letters that TOML takes in quotes only, or nothing if the line has none.
+
+    ``message`` has the line as of `tomllib.TOMLDecodeError`: "... (at line 3, column 2)".
+    """
+    place = re.search(r"at line (\d+)", message)
+    if place is None:
+        return ""
+    line = path.read_text(encoding="utf-8-sig").split("\n")[int(place[1]) - 1]
+    key = re.match(r"\s*\[*\s*(?:[\w-]+\.)*?([\w-]*[^\W\x00-\x7f][\w-]*)", line)
+    return "" if key is None else f"; write '{key[1]}' in double quotes, as it has other letters than A to Z"
 
 
 @functools.lru_cache(maxsize=64)

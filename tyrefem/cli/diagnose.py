@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -139,7 +140,8 @@ def _tell(diagnosis: Diagnosis, folder: Path, page: Path, resumed: int) -> None:
         say(sentence)
     for name in draft_effects(diagnosis):
         say(
-            f"draft effect: {folder / EFFECTS / name}; judge it by: tyrefem diagnose STUDY --effects {folder / EFFECTS}"
+            f"draft effect: {folder / EFFECTS / name}; judge it by: tyrefem diagnose STUDY --effects "
+            f"{shlex.quote(str(folder / EFFECTS))}"
         )
     for note in dict.fromkeys(note for look in diagnosis.looks for note in look.notes):
         say(note if note.startswith("ERROR: ") else f"Note: {note}")

@@ -137,6 +137,12 @@ def numbers(cells: Sequence[str], lines: Sequence[int], column: str, file: Path,
     return values
 
 
+def has_words_only(cells: Sequence[str]) -> bool:
+    """Whether every cell of a column has letters, and none a number, a clock time or a word for a missing reading."""
+    gaps = NO_READING | BROKEN
+    return all(any(map(str.isalpha, cell)) and ":" not in cell and cell.lower() not in gaps for cell in set(cells))
+
+
 def is_number(cell: str) -> bool:
     """Whether a cell is a number, with decimal comma or point."""
     return _NUMBER.fullmatch(cell) is not None

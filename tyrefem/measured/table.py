@@ -17,6 +17,7 @@ from tyrefem.measured.heading import parts
 from tyrefem.measured.lines import Lines, split
 from tyrefem.measured.names import ColumnNames, in_table_words, missing_columns_error
 from tyrefem.measured.run import MeasuredRun
+from tyrefem.measured.spikes import spike_notes
 from tyrefem.measured.table_columns import TableColumns, is_ignored, is_run
 from tyrefem.output import as_path
 
@@ -131,6 +132,8 @@ class TableLines:
         times_of_runs, notes = time.of_runs(lines, rows_of_runs, time_offset, file)
         of_sensors = (note for sensor in sensors for note in sensor.notes(lines, readings[sensor.name]))
         notes = (*lines.notes, *notes, *bare_units(sensors), *of_sensors)
+        for sensor in sensors:
+            notes += spike_notes(sensor.heading, lines.numbers, readings[sensor.name], rows_of_runs, times_of_runs)
         for name, times in times_of_runs.items():
             rows = rows_of_runs[name]
             held = {sensor: values[rows] for sensor, values in readings.items() if np.isfinite(values[rows]).any()}

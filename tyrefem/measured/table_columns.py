@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from tyrefem.errors import InputError
-from tyrefem.measured.columns import SensorColumn
+from tyrefem.measured.columns import SensorColumn, has_words_only
 from tyrefem.measured.heading import is_channel, parts, temperature_unit
 from tyrefem.measured.lines import Lines
 from tyrefem.measured.names import in_table_words
@@ -83,6 +83,9 @@ class TableColumns:
                 raise InputError(where + error.message, file=file) from None
             try:
                 if not parts(text)[1]:
+                    if has_words_only([row[column] for row in lines.rows]):
+                        wrong.append(f"'{text[:60]}' has words; if they name the runs, it needs `rename` to run")
+                        continue
                     without_unit.append(text)
                 sensors[sensor] = SensorColumn(sensor, temperature_unit(text), column, text)
             except InputError as error:

@@ -58,12 +58,15 @@ def page_data(model: BoxModel) -> dict[str, Any]:
 
 
 def argument(study: StudyData) -> str:
-    """The study as a command takes it: its name, or its path from here."""
+    """The study as a command takes it: the name by which its file is found from here, or its path from here."""
     from tyrefem import library
 
-    if study.file is None or study.name in library.names("study"):
+    if study.file is None:
         return study.name
     path = Path(study.file)
+    named = library.names("study").get(study.name)
+    if named is not None and named.resolve() == path.resolve():
+        return study.name
     return str(path.relative_to(Path.cwd())) if path.is_relative_to(Path.cwd()) else str(path)
 
 

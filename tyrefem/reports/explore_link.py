@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -36,4 +37,4 @@ def explore_link(study: StudyData, report: Path) -> ExploreLink | None:
         folder = folder.parent
     page = f"{study.name}-explore.html"
     address = next((up + page for up in ("", "../") if (folder / up / page).is_file()), "")
-    return ExploreLink(address, f"tyrefem explore {argument(study)}")
+    return ExploreLink(address, f"tyrefem explore {shlex.quote(argument(study))}")
