@@ -57,3 +57,25 @@ def test_how_a_table_was_read_is_a_warning(rig: Path) -> None:
     path.write_text(path.read_text(encoding="utf-8").replace("time [s]", "Zeit/s"), encoding="utf-8")
     with pytest.warns(ResultWarning, match=r"low\.csv: times are those of 'Zeit/s'"):
         read(card, [path])
+
+
+def test_columns_are_renamed_and_left_out(rig: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    card, _ = load(rig)
+    plain = read(card, [rig / "low.csv", rig / "high.csv"])
+    text = (rig / "low.csv").read_text(encoding="utf-8").replace("outer [degC]", "IR 1 [degC]")
+    rows = [line if line.startswith("#") else f"{line},{'room [degC]' if 'time' in line else 20}"
+            for line in text.splitlines()]  # fmt: skip
+    (rig / "low.csv").write_text("\n".join(rows), encoding="utf-8")
+    # Some table must have the columns, not each.
+    renamed = read(card, [rig / "low.csv", rig / "high.csv"], rename={"IR 1": "outer"}, ignore=["room"])
+    for before, after in zip(plain, renamed, strict=True):
+        for was, now in zip(before.series, after.series, strict=True):
+            assert (was.sensor, was.readings.tolist()) == (now.sensor, now.readings.tolist())
+    with pytest.raises(InputError, match=r"'IR 2'.*to rename"):
+        read(card, [rig / "low.csv"], rename={"IR 1": "outer", "IR 2": "inner"}, ignore=["room"])
+    command = ["rig", "identify", str(rig), "--rename", "IR 1=outer", "--out", str(tmp_path / "out")]
+    assert main(command) == 2
+    assert "column 'room' is no sensor of the rig" in capfd.readouterr().err
+    assert main(["rig", "layers", str(rig), "--ignore", "room", "--out", str(tmp_path / "out")]) == 2
+    assert "--ignore: is for a table of readings; none is given" in capfd.readouterr().err
+    assert not (tmp_path / "out").exists()

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
-from tyrefem.cli.common import ForceOption, warn
+from tyrefem.cli.common import ForceOption, IgnoreOption, RenameOption, renamed, warn
 from tyrefem.cli.progress import progress
 from tyrefem.cli.shell import answer_with, say
 from tyrefem.errors import InputError, Interrupted
@@ -82,6 +82,8 @@ def identify(
         ),
     ] = None,
     without: Annotated[list[str] | None, typer.Option(help="Leave out this sensor of the card. Repeatable.")] = None,
+    rename: RenameOption = None,
+    ignore: IgnoreOption = None,
     constant: Annotated[bool, typer.Option("--constant", help="Properties that do not depend on temperature.")] = False,
     force: ForceOption = False,
 ) -> None:
@@ -94,7 +96,8 @@ def identify(
 
     card, file = rigs.load(rig)
     warn(warning.within(file=file) for warning in card.warnings())
-    tests = rigs.read(card, tables_of(card, file, tables or ()), without or ())
+    given = tables_of(card, file, tables or ())
+    tests = rigs.read(card, given, without or (), rename=renamed(rename), ignore=ignore or ())
     chosen = bases(card, base or [])
     count = 0
     total = _USUAL * len(tests)
@@ -129,6 +132,8 @@ def layers(
         list[Path] | None, typer.Argument(metavar="[TABLE...]", help="Measured CSV files; default: simulated.")
     ] = None,
     out: OutOption = None,
+    rename: RenameOption = None,
+    ignore: IgnoreOption = None,
     most: Annotated[int, typer.Option(min=1, help="Largest number of layers to fit.")] = 4,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the noise of simulated readings.")] = 1,
     force: ForceOption = False,
@@ -142,7 +147,10 @@ def layers(
 
     card, file = rigs.load(rig)
     warn(warning.within(file=file) for warning in card.warnings())
-    tests = rigs.read(card, tables_of(card, file, tables)) if tables else ()
+    if (rename or ignore) and not tables:
+        raise InputError("is for a table of readings; none is given", field="--rename" if rename else "--ignore")
+    given = tables_of(card, file, tables) if tables else ()
+    tests = rigs.read(card, given, rename=renamed(rename), ignore=ignore or ()) if given else ()
     counts = range(1, min(most, len(card.layers)) + 1)
     place, drawn = out or Path("results") / f"rig-{_name(file)}-layers", None if tests else seed
     with results_folder(place, "rig layers", LAYER_FILES, origin=None, force=force) as folder:

@@ -17,7 +17,9 @@ from tyrefem.errors import InputError, ResultWarning, nearest, quoted
 from tyrefem.heating_test.card import RigCard, RunCard, SensorCard
 from tyrefem.heating_test.clock import Clock
 from tyrefem.heating_test.grid import PatchGrid
-from tyrefem.measured import MeasuredRun, read_table
+from tyrefem.measured import MeasuredRun
+from tyrefem.measured.names import ColumnNames
+from tyrefem.measured.table import table_lines
 
 Array = NDArray[Any]
 
@@ -72,12 +74,20 @@ class HeatingTest(Brief):
     file: Path | None = None
 
 
-def read(card: RigCard, tables: Iterable[str | Path], without: Sequence[str] = ()) -> tuple[HeatingTest, ...]:
+def read(
+    card: RigCard,
+    tables: Iterable[str | Path],
+    without: Sequence[str] = (),
+    *,
+    rename: Mapping[str, str] | None = None,
+    ignore: Iterable[str] = (),
+) -> tuple[HeatingTest, ...]:
     """Read tables as tests; their runs (``run`` column, else file name) must have names of the card's runs.
 
     Parameters
     ----------
     without : sensors of the card that the tables need not have.
+    rename, ignore : columns with other names, and columns to leave out, as of `read_table`; some table must have each.
 
     Raises InputError naming file, run and column: an unknown or repeated run, a missing sensor column, a table that
     ends before the laser is on or ends after the card's phases.
@@ -88,20 +98,24 @@ def read(card: RigCard, tables: Iterable[str | Path], without: Sequence[str] = (
     wanted = [name for name in card.sensors if name not in without]
     if not wanted:
         raise InputError("no sensor is left", field="--without")
+    names, columns = ColumnNames.of(ignore=ignore, rename=rename), list[str]()
     heating_tests: dict[str, HeatingTest] = {}
     for table in tables:
-        for run in read_table(table):
+        measured = table_lines(table, names.rename).read(rename=names.rename, ignore=names.ignore)
+        columns += [*measured.columns, *measured.headings]
+        for run in measured.runs:
             if run.name not in card.runs:
                 words = f"run '{run.name}' is not in the rig's card{nearest(run.name, card.runs)}"
                 raise InputError(words, file=table)
             if run.name in heating_tests:
-                first = next(file for file in tables if run.name in {each.name for each in read_table(file)})
+                first = heating_tests[run.name].file
                 raise InputError(f"run '{run.name}' is given twice; it also stands in {first}", file=table)
             if run.notes:
                 warnings.warn(f"{run.file}: {'; '.join(run.notes)}", ResultWarning, stacklevel=2)
             heating_tests[run.name] = matched(card, run, wanted, set(without))
     if not heating_tests:
         raise InputError("no table of a test is given")
+    names.require(columns)
     return tuple(heating_tests[name] for name in card.runs if name in heating_tests)
 
 
