@@ -41,9 +41,10 @@ def test_what_is_left_follows_from_the_work_done() -> None:
     stage = Stage("simulations", done=3.0, total=4.0, start=time.monotonic() - 30.0)
     assert stage.left == pytest.approx(10.0, abs=0.1)
     assert stage.words == "about 10 s left"
-    # Too early to tell; nothing is done yet.
+    # Too early to tell; nothing is done yet; all that is counted is done, but the stage goes on.
     assert Stage("simulations", done=3.0, total=4.0).words == ""
     assert Stage("simulations", total=4.0, start=time.monotonic() - 30.0).words == ""
+    assert Stage("simulations", done=4.0, total=4.0, start=time.monotonic() - 30.0).words == ""
 
 
 def test_a_stage_without_count_has_the_time_of_the_last_time(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -41,5 +41,7 @@ def test_pictures_carry_the_numbers(footprint: Footprint) -> None:
     for picture in drawn:
         assert f"{footprint.load / 1e3:.3f} kN" in " ".join(text.get_text() for text in picture.texts)
     assert f"coefficient {loss.coefficient:.4f}" in " ".join(text.get_text() for text in drawn[2].texts)
+    # Four more digits and a drum, as of a truck tyre: no line is cut.
+    assert all(len(text.get_text()) < 100 and not text.get_text().endswith("...") for text in drawn[2].texts)
     shown = history.axes[0].lines[2].get_ydata()
     assert shown == pytest.approx(100 * cycle.at(0.31, 0.0, np.linspace(-np.pi, np.pi, 37))[2])

@@ -65,7 +65,7 @@ def check(
     is_card = path.suffix.lower() == ".toml"
     if is_card:
         _refuse_names(rename, ignore)
-    with progress(f"{path.name}: checked"):
+    with progress(f"{path.name}: checking"):
         words = _card(path) if is_card else _table(path, renamed(rename), ignore or [])
     answer_with({"file": path, "words": words})
     say(f"{path}: {words}")
@@ -81,7 +81,7 @@ def _plugins(path: Path, study: str | None) -> None:
     """Print every contract of a file's plugins; exit code 2 if one is not kept."""
     from tyrefem.contracts import check_file
 
-    with progress(f"{path.name}: checked"):
+    with progress(f"{path.name}: checking"):
         checked = check_file(path, study)
     say(*checked.lines)
     words = f"{checked.count} contracts, all kept"

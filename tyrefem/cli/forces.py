@@ -93,7 +93,7 @@ def forces(
         results_folder(place, "forces", FILES, origin=StudyOrigin(loaded), force=force) as folder,
         stages() as tick,
     ):
-        tick(f"{loaded.name}: inflated and pressed", 0.0, 0.0)
+        tick(f"{loaded.name}: inflating and pressing", 0.0, 0.0)
         try:
             result = tyre_forces(
                 loaded, progress=lambda done, total: tick(f"{loaded.name}: rolling", done, total), **given

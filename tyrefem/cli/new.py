@@ -91,7 +91,7 @@ def new(
     folder = Path(library.FOLDERS[kind])
     target = folder / name / "study.toml" if kind == "study" else folder / f"{name}.toml"
     if out is None and (os.path.lexists(target) or (kind == "study" and os.path.lexists(target.parent))):
-        raise InputError("the file exists already; nothing was written", file=target)
+        raise InputError("the file exists already; nothing was written; to replace it: --out FILE --force", file=target)
     if out is not None and out.is_file() and not force:
         raise InputError("exists and may have been edited; replace it with --force", file=out, field="--out")
     target = out or target

@@ -42,7 +42,7 @@ def new_size(kind: str, size: str, numbers: Mapping[str, Any], out: Path | None,
         if key not in NUMBERS
     }
     reference = {"size": size, **of_use, **({"parameters": named} if named else {})}
-    with progress(f"{size}: drawn"):
+    with progress(f"{size}: drawing"):
         drawn = drawn_of(reference)
         section = load(reference)  # also checks that the section can be built
     name = re.sub(r"[^\w.]+", "-", drawn.size.text.lower())
@@ -51,7 +51,7 @@ def new_size(kind: str, size: str, numbers: Mapping[str, Any], out: Path | None,
     if kind == "study" and target.suffix != ".toml":
         target = target / "study.toml"
     if out is None and os.path.lexists(target):
-        raise InputError("the file exists already; nothing was written", file=target)
+        raise InputError("the file exists already; nothing was written; to replace it: --out FILE --force", file=target)
     if target.is_file() and not force:
         raise InputError("exists and may have been edited; replace it with --force", file=target, field="--out")
     place_of_output(target.parent)

@@ -120,7 +120,7 @@ def press(
     place = out or Path("results") / f"{loaded.name}-press"
     with (
         results_folder(place, "press", FILES, origin=StudyOrigin(loaded), force=force) as folder,
-        progress(f"{loaded.name}: inflated and pressed"),
+        progress(f"{loaded.name}: inflating and pressing"),
     ):
         try:
             for name in at or ():

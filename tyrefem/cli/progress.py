@@ -49,8 +49,9 @@ class Stage:
         elapsed = self.elapsed
         if elapsed < SETTLED:
             return None
-        if self.total and self.done > 0:
-            return elapsed * max(self.total - self.done, 0.0) / self.done
+        # Work after the counted part, such as growth of cracks after a run, has no count.
+        if 0 < self.done < self.total:
+            return elapsed * (self.total - self.done) / self.done
         return None if self.before is None or self.before <= elapsed else self.before - elapsed
 
     @property

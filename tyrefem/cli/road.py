@@ -189,7 +189,7 @@ def averaging(
         inner_temperature=inside,
     )
     with nullcontext() if out is None else results_file(out, PICTURES, force=force):
-        with progress("contacts resolved"):
+        with progress("resolving contacts"):
             errors = averaging_sweep(point, [v / 3.6 for v in SPEEDS], LENGTHS)
         above = _print_averaging(errors)
         if out is not None:

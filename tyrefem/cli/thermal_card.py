@@ -41,7 +41,7 @@ def thermal_card(
         results_folder(
             out or Path("results") / f"{name}-thermal", "thermal-card", FILES, origin=None, force=force
         ) as folder,
-        progress(f"{name}: identified"),
+        progress(f"{name}: identifying"),
     ):
         try:
             result = identify(card)

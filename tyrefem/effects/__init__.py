@@ -122,7 +122,8 @@ class EffectOf:
         name = value.get("name")
         plugins.refuse(KIND, name, known=isinstance(name, str) and name in known)
         if not isinstance(name, str) or name not in known:
-            raise InputError(f"unknown effect {name!r:.40}{nearest(str(name), known)}", field="name")
+            wrong = f"unknown effect {name!r:.40}{nearest(str(name), known)}"
+            raise InputError(f"{wrong}; your own needs its folder in {FOLDERS}", field="name")
         effect, entry = known[name], {key: entry for key, entry in value.items() if key != "name"}
         # A fit reads hundreds of studies that differ in one effect; effects are immutable, so studies share them.
         return _READ.get((effect, repr(entry)), lambda: effect.check(entry))

@@ -173,9 +173,10 @@ def harmonics_figure(loss: RevolutionLoss) -> Figure:
     bar.set_label(f"loss per revolution [{unit}]", fontsize=FONT)
     bar.ax.tick_params(labelsize=FONT)
     title(
-        drawn, "Energy and loss by harmonic of the revolution",
-        f"{described(cycle.footprint)}; {loss.energy:.1f} J per revolution, rolling resistance "
-        f"{loss.rolling_resistance:.1f} N, coefficient {loss.coefficient:.4f}",
+        drawn,
+        f"Energy and loss by harmonic: {loss.energy:.1f} J per revolution, {loss.rolling_resistance:.1f} N, "
+        f"coefficient {loss.coefficient:.4f}",
+        described(cycle.footprint),
     )  # fmt: skip
     return drawn
 
