@@ -185,6 +185,10 @@ BAD = {
         HEAD + "0,25,25\n1,25\n",
         "line 3: 2 cells, but the heading has 3 (a cell without a reading is empty, not left out)",
     ),
+    "a heading that is none": (
+        "Logger 3000\nTime\t08:12:00\nX_Value\tcrown [degC]\tbead [degC]\n0\t25\t25\n",
+        "line 3: 3 cells, but the heading, line 2, has 2",
+    ),
     "long row": (HEAD + "0,25,25\n1,25,25,25\n", "line 3: 4 cells, but the heading has 3"),
     "decimal commas": (HEAD + "0,25,5,25,5\n", "line 2: 5 cells, but the heading has 3 (decimal commas need"),
     "both marks": (

@@ -118,7 +118,8 @@ def split(path: Path, rename: Mapping[str, str] | None = None) -> Lines:
         raise error.within(file=path) from None
     number, line = content[position]
     heading = tuple(_without_trailing_empty(_cells(line, delimiter, number, path)))
-    rows, numbers = _rows(content[position + 1 :], delimiter, heading, path)
+    place = f", line {number}," if position else ""
+    rows, numbers = _rows(content[position + 1 :], delimiter, heading, path, place)
     preamble = [text.strip(DELIMITERS + ' "') for _, text in content[:position]]
     notes: tuple[str, ...] = ()
     if rows:
@@ -168,7 +169,7 @@ def _rank(cell: str, rename: Mapping[str, str]) -> int | None:
 
 
 def _rows(
-    content: list[tuple[int, str]], delimiter: str, heading: tuple[str, ...], path: Path
+    content: list[tuple[int, str]], delimiter: str, heading: tuple[str, ...], path: Path, place: str
 ) -> tuple[list[list[str]], list[int]]:
     width = len(heading)
     rows, numbers = [], []
@@ -180,7 +181,7 @@ def _rows(
             hint = " (a cell without a reading is empty, not left out)"
             if len(cells) > width:
                 hint = " (decimal commas need ';' between the columns)" if delimiter == "," else ""
-            raise InputError(f"line {number}: {len(cells)} cells, but the heading has {width}{hint}", file=path)
+            raise InputError(f"line {number}: {len(cells)} cells, but the heading{place} has {width}{hint}", file=path)
         rows.append(cells)
         numbers.append(number)
     return rows, numbers
