@@ -72,6 +72,9 @@ def test_effects_on_the_heat_are_refused(tmp_path):
         export(study, tmp_path / "tyre.npz")
 
 
+OVER_TEMPERATURE = [["20 degC", "0.30 W/m/K"], ["100 degC", "0.25 W/m/K"]]
+
+
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
@@ -80,6 +83,14 @@ def test_effects_on_the_heat_are_refused(tmp_path):
         ({"effects": [{"name": "sun", "absorbed": "200 W/m**2"}]}, "effects.sun: gives heat to a surface; a real-time"),
         ({"effects": [{"name": "radiation", "emissivity": 0.5}]}, "effects.radiation: radiates"),
         ({"effects": [{"name": "standing-wave", "gain": 1.0}]}, "effects.standing-wave: changes the heat source"),
+        (
+            {"materials.tread": {"base": "nasa-tread", "conductivity": {"table": OVER_TEMPERATURE}}},
+            "materials.tread.conductivity: depends on temperature; a real-time model has a single value",
+        ),
+        (
+            {"materials.tread": "rubber-tread-passenger-frequency"},
+            "materials.tread.loss_tangent: depends on frequency; in a real-time model",
+        ),
     ],
 )
 def test_what_the_file_tells_is_refused_before_any_run(changes, message, tmp_path, monkeypatch):

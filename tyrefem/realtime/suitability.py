@@ -25,10 +25,12 @@ def check_suitable(study: StudyData) -> None:
 
     Raises
     ------
-    InputError : slip, torque, camber or friction of a rolling tyre; feedback of temperature on the strain cycle; an
-        effect with states, or with heat beside that of the strain cycle. The message names the effect.
+    InputError : slip, torque, camber or friction of a rolling tyre; feedback of temperature on the strain cycle; a
+        material card over temperature or frequency; an effect with states, or with heat beside that of the strain
+        cycle. The message names card and effect.
     """
     check_motion(study)
+    check_materials(study)
     if study.card.mechanics.feedback is not None:
         raise InputError(
             "a real-time model has no feedback of temperature on the strain cycle", field="mechanics.feedback"
@@ -39,6 +41,22 @@ def check_suitable(study: StudyData) -> None:
         problems += ["has a state; a real-time model has those of rubber, air and rim"] if effect.states else []
         if problems:
             raise InputError(problems[0], field=f"effects.{effect.name}")
+
+
+def check_materials(study: StudyData) -> None:
+    """Raise an error for cards with conductivity or heat capacity over temperature, or tan delta over frequency."""
+    for region, card in study.materials.items():
+        for name in ("conductivity", "density", "specific_heat"):
+            if getattr(card, name).table is not None:
+                raise InputError(
+                    "depends on temperature; a real-time model has a single value, without 'table'",
+                    field=f"materials.{region}.{name}",
+                )
+        if card.loss_tangent.depends_on_frequency:
+            raise InputError(
+                "depends on frequency; in a real-time model it depends on temperature only",
+                field=f"materials.{region}.loss_tangent",
+            )
 
 
 def check_motion(study: StudyData) -> None:
