@@ -1,5 +1,7 @@
 """The Magic Formula: its slopes and peaks, coefficients from points, `.tir` files."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -235,3 +237,24 @@ def test_wrong_points_are_one_clear_error():
         fit_magic_formula(ForcePoints.of({"load": [1e3, 1e3], "slip_angle": [0.0, 0.1], "lateral": [0.0, -1e3]}), 0.3)
     with pytest.raises(InputError, match="no coefficient 'PCY7'"):
         MagicFormula({"PCY7": 1.0}, 4e3, 2e5, 0.3)
+
+
+@pytest.mark.parametrize(
+    ("deflection", "slope"),
+    [(0.020, 2.0e5), (0.022, 2.6e5), (0.018, 1.9e5), (0.030, 3.0e5)],
+    ids=["linear", "progressive", "degressive", "slope above twice the secant"],
+)
+def test_a_simulator_has_the_load_at_the_deflection_of_the_tyre(fit, tmp_path, deflection, slope):
+    """As simulators read it: q_1 = sqrt(c² - 4 q_2), c = C_z0 R_0 / F_z0. Without q_2 the slope gives 6.6 mm less."""
+    file = tmp_path / "tyre.tir"
+    file.write_text(tir_text(fit, replace(PARTS, vertical_stiffness=slope, deflection=deflection), "spring"))
+    entries = (line.partition("=") for line in file.read_text().splitlines())
+    read = {name.strip(): value.strip() for name, _, value in entries}
+    nominal, radius = float(read["FNOMIN"]), float(read["UNLOADED_RADIUS"])
+    c, q_2 = float(read["VERTICAL_STIFFNESS"]) * radius / nominal, float(read["Q_FZ2"])
+    q_1 = np.sqrt(c**2 - 4 * q_2)
+    assert q_1 == pytest.approx(float(read["Q_FZ1"]), abs=1e-3)
+    x = deflection / radius
+    assert nominal * (q_1 * x + q_2 * x**2) == pytest.approx(4000.0, rel=1e-4)
+    tangent = nominal / radius * (q_1 + 2 * q_2 * x)
+    assert tangent == pytest.approx(min(slope, 1.98 * 4000.0 / deflection), rel=1e-4)

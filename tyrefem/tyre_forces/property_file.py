@@ -30,6 +30,8 @@ COMBINED: dict[str, dict[str, float]] = {
     },
     "ALIGNING": {"SSZ1": 0, "SSZ2": 0, "SSZ3": 0, "SSZ4": 0},
 }  # fmt: skip
+#: Largest slope of the load over load / deflection; at 2 the root of simulators is 0, and by rounding no number.
+STEEPEST = 1.98
 #: Width of names.
 WIDTH = 24
 
@@ -41,7 +43,8 @@ class TyreDimensions(Brief):
     Parameters
     ----------
     width, rim_radius, rim_width : m. aspect_ratio : 1. mass : kg.
-    vertical_stiffness : N/m, under the nominal load. speed : of the forces, m/s.
+    vertical_stiffness : N/m, slope of the load under the nominal load. speed : of the forces, m/s.
+    deflection : m, under the nominal load; None: a linear spring.
     """
 
     width: float
@@ -51,6 +54,7 @@ class TyreDimensions(Brief):
     mass: float
     vertical_stiffness: float
     speed: float
+    deflection: float | None = None
 
 
 def tir_text(fit: MagicFormulaFit, dimensions: TyreDimensions, title: str, notes: tuple[str, ...] = ()) -> str:
@@ -78,7 +82,7 @@ def tir_text(fit: MagicFormulaFit, dimensions: TyreDimensions, title: str, notes
         },
         "OPERATING_CONDITIONS": {"INFLPRES": pressure, "NOMPRES": pressure},
         "INERTIA": {"MASS": dimensions.mass},
-        "VERTICAL": {"FNOMIN": formula.nominal_load, "VERTICAL_STIFFNESS": dimensions.vertical_stiffness},
+        "VERTICAL": {"FNOMIN": formula.nominal_load, **_spring(formula, dimensions)},
         "INFLATION_PRESSURE_RANGE": {
             "PRESMIN": points.pressure.min() or pressure, "PRESMAX": points.pressure.max() or pressure,
         },
@@ -96,6 +100,22 @@ def tir_text(fit: MagicFormulaFit, dimensions: TyreDimensions, title: str, notes
     for section, entries in sections.items():
         lines += ["$" + "-" * 70, f"[{section}]", *_entries(entries)]
     return "\n".join(lines) + "\n"
+
+
+def _spring(formula: MagicFormula, dimensions: TyreDimensions) -> dict[str, float]:
+    """Load over deflection D of the Magic Formula 6.1: F_z = F_z0 (q_1 x + q_2 x²), x = D / R_0.
+
+    Slope and deflection D_0 under the nominal load give q_1 and q_2: with x_0 = D_0 / R_0 and c = C_z0 R_0 / F_z0, the
+    slope in x, q_1 = 2 / x_0 - c and q_2 = (c - 1 / x_0) / x_0. Simulators read C_z0 and q_2, and take
+    q_1 = sqrt(c² - 4 q_2): a slope above `STEEPEST` F_z0 / D_0 is written as that, for q_1 > 0.
+    """
+    stiffness = dimensions.vertical_stiffness
+    if dimensions.deflection is None:
+        return {"VERTICAL_STIFFNESS": stiffness}
+    secant = formula.nominal_load / dimensions.deflection
+    stiffness = min(stiffness, STEEPEST * secant)
+    slope, x = stiffness * formula.radius / formula.nominal_load, dimensions.deflection / formula.radius
+    return {"VERTICAL_STIFFNESS": stiffness, "Q_FZ1": 2.0 / x - slope, "Q_FZ2": (slope - 1.0 / x) / x}
 
 
 def _entries(entries: Mapping[str, object]) -> list[str]:

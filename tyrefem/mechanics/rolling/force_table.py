@@ -114,6 +114,7 @@ class TyreForces(Brief):
             mass=mass,
             vertical_stiffness=pressed.footprint.stiffness,
             speed=self.wheel.speed,
+            deflection=pressed.footprint.deflection,
         )
 
 
