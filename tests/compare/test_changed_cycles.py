@@ -2,16 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
+from concurrent.futures import Executor
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pandas as pd
 import pytest
 
 import tyrefem as tf
-from tyrefem.compare import ComparisonData, runs
+from tyrefem.compare import ComparisonData, changed_cycles
+from tyrefem.compare.changed_cycles import Key
+from tyrefem.compare.interface import Computed
 from tyrefem.compare.packed_drive import Work, solve_cycles
+from tyrefem.compare.runs import Runs
+from tyrefem.mechanics.cycle_schedule import CycleSchedule
 from tyrefem.mechanics.footprint.pressed_tyre import REMEMBERED_TYRES
+from tyrefem.reduced.training import Snapshots
 
 SHORT = {"mesh.size": "14 mm", "mesh.element": "P1", "drive.duration": "60 s", "numerics.tolerance": "0.02 delta_degC"}
 STIFF = ("materials.tread.shear_modulus.value", "materials.carcass.cord.ply_shear_modulus")
@@ -69,11 +77,11 @@ def solved(monkeypatch: pytest.MonkeyPatch) -> list[Work]:
     """The changed strain cycles that are solved."""
     made: list[Work] = []
 
-    def counted(work: Work) -> None:
-        made.append(work)
-        solve_cycles(work)
+    def counted(changed: Sequence[Work]) -> None:
+        made.extend(changed)
+        solve_cycles(changed)
 
-    monkeypatch.setattr(runs, "solve_cycles", counted)
+    monkeypatch.setattr(changed_cycles, "solve_cycles", counted)
     return made
 
 
@@ -125,3 +133,55 @@ def test_a_reduced_model_follows_a_loss_that_changes_the_strain_energy(monkeypat
     near, far = changes(comparison), changes(full)
     for sensor in study.sensors:
         assert near[sensor, key] == pytest.approx(far[sensor, key], abs=0.1 * comparison.reduced.tolerance)
+
+
+class Noted(Executor):
+    """Other processes, in name only. ``order``: drives as they are there, and the changed cycles that begin: the drives
+    of each piece."""
+
+    def __init__(self) -> None:
+        self.order: list[Any] = []
+
+    def map(self, function: Any, *work: Any, timeout: float | None = None, chunksize: int = 1) -> Iterator[Any]:
+        """Answers without any work; cycles begin at once."""
+        (given,) = work
+        if function is not solve_cycles:
+            return map(self._driven, range(len(given)))
+        self.order.append([[Path(each.drive.cycles).stem for each in piece] for piece in given])
+        return iter([None] * len(given))
+
+    def _driven(self, number: int) -> Any:
+        self.order.append(str(number))
+        computed = Computed(None, pd.DataFrame({"time_s": [0.0]}), pd.DataFrame({"crown": [0.0]}), [])
+        drive = tf.study("nasa-22x5.5-8pr").card.drive
+        return computed, Snapshots(np.zeros((1, 1)), np.zeros((1, 1))), CycleSchedule(drive, (), ((number,),), ())
+
+
+def began(drives: list[dict[str, str]]) -> list[Any]:
+    """In which order drives are there and changed cycles begin, with all of them ahead."""
+    study, executor = pressed("large").replace({"uncertainty": dict.fromkeys(STIFF, 0.2)}), Noted()
+    studies: dict[Key, Any] = {}
+    for number, drive in enumerate(drives):
+        driven = study.with_drive(drive)
+        studies |= {(str(number), None): driven}
+        studies |= {(str(number), key): driven.scaled(key, 1.2) for key in STIFF}
+    with Runs(studies, dict.fromkeys(STIFF, 0.2), executor=executor) as made:
+        made.begin([key for key in studies if key[1] is not None])
+        count = len(executor.order)
+        made.solve_cycles(studies)
+        assert len(executor.order) == count
+    return executor.order
+
+
+def test_changed_cycles_begin_before_the_last_drive_is_there() -> None:
+    """Else a process that has no drive to run would wait; drives of one pressure share a changed tyre."""
+    higher = {"pressure": "95 psi"}
+    order = began([{}, {"load": "3000 lbf"}, higher])
+    assert order == ["0", "1", [["0", "1"], ["0", "1"]], "2", [["2"], ["2"]]]
+    order = began([{}, higher, {"load": "3000 lbf"}])
+    assert order == ["0", [["0"], ["0"]], "1", [["1"], ["1"]], "2", [["2"], ["2"]]]
+
+
+def test_no_more_than_two_drives_of_one_pressure_are_a_piece_of_work() -> None:
+    order = began([{}, {"load": "3000 lbf"}, {"load": "2500 lbf"}])
+    assert order == ["0", "1", [["0", "1"], ["0", "1"]], "2", [["2"], ["2"]]]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pickle
+
 import numpy as np
 import pytest
 from bias_tyre import bias
@@ -11,8 +13,15 @@ from tyrefem.mechanics.footprint.compliance import TreadCompliance
 from tyrefem.mechanics.footprint.contact import Pressing
 from tyrefem.mechanics.footprint.footprint import Footprint
 from tyrefem.mechanics.footprint.harmonic_balance import Balance
+from tyrefem.mechanics.footprint.harmonics import Harmonics
 from tyrefem.mechanics.footprint.nearby_balance import nearby_balance
-from tyrefem.mechanics.footprint.nearby_tread import NearbyTread, ShortWaves, few_harmonics, few_weights
+from tyrefem.mechanics.footprint.nearby_tread import (
+    NearbyPressing,
+    NearbyTread,
+    ShortWaves,
+    few_harmonics,
+    few_weights,
+)
 from tyrefem.mechanics.footprint.pressed_tyre import PressedTyre, mechanical_mesh
 from tyrefem.mechanics.footprint.strain_harmonics import StrainHarmonics
 
@@ -65,6 +74,39 @@ def test_other_harmonics_are_solved_one_by_one(start: Footprint, stiffer: Pressi
     np.testing.assert_allclose(near.up_to(30, 2), alone.up_to(30, 2), rtol=1e-9, atol=0)
     loads = start.load_harmonics[:31]
     np.testing.assert_array_equal(near.fields(loads, 2), alone.fields(loads, 2))
+
+
+def test_footprints_of_one_tyre_share_its_factors(
+    start: Footprint, stiffer: Pressing, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    waves = ShortWaves(start)
+    highest, above = start.harmonics, waves.above
+    first = NearbyPressing(stiffer.state, waves=waves)
+    compliance, motion = first.tread.up_to(highest, above), first.tread.fields(start.load_harmonics, above)
+    second = NearbyPressing(stiffer.state, waves=waves, like=first)
+    monkeypatch.delattr(Harmonics, "factor_with_last")
+    np.testing.assert_array_equal(second.tread.up_to(highest, above), compliance)
+    np.testing.assert_array_equal(second.tread.fields(start.load_harmonics, above), motion)
+
+
+def test_forces_beside_the_tread_are_solved_at_all_harmonics(start: Footprint, stiffer: Pressing) -> None:
+    waves = ShortWaves(start)
+    near, alone = NearbyTread(stiffer.harmonics, waves), TreadCompliance(stiffer.harmonics)
+    loads = np.zeros((start.harmonics + 1, stiffer.harmonics.elements.n_dofs))
+    loads[waves.above + 1 :, stiffer.harmonics.free[0]] = 1.0
+    np.testing.assert_array_equal(near.responses(loads, waves.above), alone.responses(loads, waves.above))
+
+
+def test_a_footprint_from_another_process_knows_the_compliance_of_its_short_waves(
+    start: Footprint, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    above = ShortWaves(start).above
+    compliance = start.grid.tread.up_to(start.harmonics, above)
+    tread = pickle.loads(pickle.dumps(start.grid.tread))
+    monkeypatch.delattr(Harmonics, "compliance")
+    np.testing.assert_array_equal(tread.up_to(start.harmonics, above), compliance)
+    with pytest.raises(AttributeError, match="compliance"):
+        tread.up_to(start.harmonics, above + 1)
 
 
 def test_strain_energy_near_a_footprint_is_that_of_the_whole_compliance(

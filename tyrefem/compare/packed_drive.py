@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pickle
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -108,10 +108,11 @@ class Work:
         return simulate(tyre) if tyre.study.card.mechanics.feedback is None else run(tyre.study)
 
 
-def solve_cycles(work: Work) -> None:
-    """In a worker: solve the strain cycles of a changed run, for all processes. Errors appear in the run itself."""
-    with suppress(InputError):
-        _ = work.tyre.schedule
+def solve_cycles(changed: Sequence[Work]) -> None:
+    """In a worker: solve the strain cycles of changed runs, for all processes. Errors appear in the run itself."""
+    for work in changed:
+        with suppress(InputError):
+            _ = work.tyre.schedule
 
 
 def nearby_cycles(study: StudyData, base: StudyData) -> bool:

@@ -10,9 +10,10 @@ from typing import Any
 
 import numpy as np
 
+from tyrefem.compare.changed_cycles import Key
 from tyrefem.compare.interface import Computed
 from tyrefem.compare.packed_drive import Work, nearby_cycles
-from tyrefem.compare.runs import Key, Runs
+from tyrefem.compare.runs import Runs
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
 from tyrefem.mechanics.cycle_schedule import same_cycles

@@ -14,8 +14,9 @@ from typing import Any
 import numpy as np
 
 from tyrefem.brief import counted
+from tyrefem.compare.changed_cycles import ChangedCycles, Key
 from tyrefem.compare.interface import Computed, arrays_of, computed_from, computed_of
-from tyrefem.compare.packed_drive import PackedDrive, Work, same_tyre, solve_cycles
+from tyrefem.compare.packed_drive import PackedDrive, Work
 from tyrefem.errors import InputError
 from tyrefem.estimates import work as estimate
 from tyrefem.inputs.study import StudyData
@@ -30,8 +31,6 @@ from tyrefem.simulation.run import run
 from tyrefem.variants.answer_store import AnswerStore, digest, effects_source, plain
 from tyrefem.variants.task import Bundle, bundle, unpacked
 
-#: Drive and changed input; None: no input is changed.
-Key = tuple[str, str | None]
 #: Number of fields of a full run for training.
 FIELDS = 30
 #: Time of a footprint that starts from a nearby one, over that from the free tyre.
@@ -96,7 +95,7 @@ class Runs:
     def __enter__(self) -> Runs:
         self._folder = tempfile.TemporaryDirectory(prefix="tyrefem-")
         self._drives: dict[str, PackedDrive] = {}
-        self._cycles_of: set[Key] = set()
+        self._cycles = ChangedCycles(self.studies, Path(self._folder.name), self.each)
         self._shown = 0
         return self
 
@@ -173,48 +172,46 @@ class Runs:
         """The results of the function, in the order of ``work``."""
         return map(function, work) if self.executor is None else self.executor.map(function, work)
 
-    def begin(self) -> None:
-        """Run every unchanged drive; its changed runs share its strain cycles."""
+    def begin(self, ahead: Sequence[Key] = ()) -> None:
+        """Run every unchanged drive; its changed runs share its strain cycles.
+
+        ``ahead``: changed runs whose strain cycles other processes begin as soon as their drives are there.
+        """
         cycles = {drive: _costly_cycles(result) for drive, result in self.known.items()}
         packed = {drive: bundle(self.studies[drive, None]) for drive in self.drives}
         for drive, result in self.known.items():
             self._add((drive, None), computed_of(result), snapshots(result, FIELDS))
         left = [drive for drive in self.drives if drive not in self.known]
         answers = self._answers(base_run, [packed[drive] for drive in left], [(drive, None) for drive in left])
-        for drive, (computed, sample, cycles[drive]) in zip(left, answers, strict=True):
-            self._add((drive, None), computed, sample)
-            self._keep(FULL, (drive, None), arrays_of(computed))
-            self._show()
-        first: PackedDrive | None = None
-        #: Drive -> load cases, and the first drive of the same tyre; only drives with costly cycles.
-        self._cases = {drive: repr(known.cases) for drive, known in cycles.items() if known is not None}
-        self._tyre_of: dict[str, str] = {}
+        waiting: list[Key] = []
         for number, drive in enumerate(self.drives):
-            path = Path(self._folder.name) / f"{number}.pickle"
-            if cycles[drive] is not None:
-                path.write_bytes(pickle.dumps(cycles.pop(drive)))
-            changed = self._changed_folder(drive) if drive in self._cases else ""
-            self._drives[drive] = PackedDrive(packed[drive], first, str(path) if path.exists() else "", changed)
-            first = first or self._drives[drive]
+            if drive not in self.known:
+                computed, sample, cycles[drive] = next(answers)
+                self._add((drive, None), computed, sample)
+                self._keep(FULL, (drive, None), arrays_of(computed))
+                self._show()
+            self._pack(drive, packed[drive], cycles.pop(drive))
+            waiting += [key for key in ahead if key[0] == drive]
+            after = self.drives[number + 1 : number + 2]
+            alone = len({of for of, _ in waiting}) == 1
+            if not (alone and after and self._cycles.same_inflation(drive, after[0])):
+                self._cycles.begin(waiting, self.work)
+                waiting = []
 
-    def _changed_folder(self, drive: str) -> str:
-        """The folder of changed strain cycles: that of the first drive of the same tyre."""
-        study = self.studies[drive, None]
-        alike = (other for other in self._tyre_of if same_tyre(study, self.studies[other, None]))
-        first = self._tyre_of[drive] = next(alike, drive)
-        folder = Path(self._folder.name) / f"changed-{self.drives.index(first)}"
-        folder.mkdir(exist_ok=True)
-        return str(folder)
+    def _pack(self, drive: str, packed: Bundle, cycles: CycleSchedule | None) -> None:
+        """Put a drive, with its costly strain cycles, where any process finds it."""
+        first, number = next(iter(self._drives.values()), None), len(self._drives)
+        if cycles is None:
+            self._drives[drive] = PackedDrive(packed, first)
+            return
+        path = Path(self._folder.name) / f"{number}.pickle"
+        path.write_bytes(pickle.dumps(cycles))
+        self._drives[drive] = PackedDrive(packed, first, str(path), self._cycles.folder_of(drive, cycles))
 
     def solve_cycles(self, keys: Iterable[Key]) -> None:
         """Solve the changed strain cycles of runs, each once: drives with the same load cases share them."""
-        left: dict[tuple[str, str | None, str], Key] = {}
-        for drive, name in keys:
-            if drive in self._cases and not same_cycles(self.studies[drive, name], self.studies[drive, None]):
-                left.setdefault((self._tyre_of[drive], name, self._cases[drive]), (drive, name))
-        wanted = [key for key in left.values() if key not in self._cycles_of]
-        for key, _ in zip(wanted, self.each(solve_cycles, map(self.work, wanted)), strict=True):
-            self._cycles_of.add(key)
+        self._cycles.begin(keys, self.work)
+        for _ in self._cycles.finish():
             self._show()
 
     def run_for_training(self, keys: Sequence[Key]) -> None:
@@ -290,7 +287,7 @@ class Runs:
 
     def _show(self) -> None:
         """Tell how many runs are finished; a solved strain cycle counts as its run until this is finished."""
-        pending = len(self._cycles_of - self.computed.keys())
+        pending = len(self._cycles.solved - self.computed.keys())
         self._shown = max(self._shown, len(self.computed) + pending)
         self.done(self._shown)
 

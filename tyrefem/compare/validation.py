@@ -249,8 +249,9 @@ def _by_runs(
             certificate = ReducedInputCertificate.of(verdict) if certified else None
             why = str(verdict) if refused else ""
             return dict(runs.computed), certificate, [*runs.cost, *_model_notes(model, certificate, why)]
-        runs.begin()
         certificate, why = None, str(verdict) if refused else ""
+        # All of them are needed, whether a model holds or not.
+        runs.begin([key for key in reducible(studies) if key[1] is not None] if model and not why else [])
         if model and not why:
             certificate, why = _certified(runs, work.settings)
             runs.keep_verdict(why if certificate is None else certificate.values)

@@ -66,6 +66,8 @@ class TreadCompliance(Brief):
     harmonics: Harmonics
     #: Compliances of solved harmonics; the cache holds more than `solved_harmonics` of any footprint.
     _solved: Cache[Array] = field(default_factory=lambda: Cache(size=128), init=False, repr=False)
+    #: Compliance of the latest harmonics above those of a large motion: footprints take it to other processes.
+    _short: dict[tuple[int, int], Array] = field(default_factory=dict, init=False, repr=False)
 
     def __post_init__(self) -> None:
         state = self.harmonics.state
@@ -132,7 +134,16 @@ class TreadCompliance(Brief):
         return self._solved.get(n, compute)
 
     def up_to(self, highest: int, above: int = -1) -> Array:
-        """(highest - above, c, m, c, m) compliance of all harmonics above ``above``."""
+        """(highest - above, c, m, c, m) compliance of all harmonics above ``above``; not to be written to."""
+        if above < 0:
+            return self._interpolated(highest, above)
+        if (highest, above) not in self._short:
+            self._short.clear()
+            self._short[highest, above] = self._interpolated(highest, above)
+        return self._short[highest, above]
+
+    def _interpolated(self, highest: int, above: int) -> Array:
+        """`up_to` from the solved harmonics."""
         weights = interpolation(highest)[above + 1 :]
         c, m = self.dofs.shape
         total = np.zeros((len(weights), c, m, c, m))

@@ -3,29 +3,34 @@
 from __future__ import annotations
 
 import functools
+from collections.abc import Hashable
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
+import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from tyrefem.cache import Cache
+from tyrefem.cache import Cache, fingerprint
 from tyrefem.mechanics.footprint.contact import Pressing
 from tyrefem.mechanics.footprint.footprint import Footprint
 from tyrefem.mechanics.footprint.harmonic_balance import ON_THE_WAY, Balance
 from tyrefem.mechanics.footprint.large_motion import DeflectedState, LargeMotion
 from tyrefem.mechanics.footprint.nearby_tread import NearbyPressing, ShortWaves
 from tyrefem.mechanics.footprint.taut_tyre import TautTyre, tautened
+from tyrefem.mechanics.footprint.tyre_on_road import TyreOnRoad
 from tyrefem.mechanics.solid.body import Prestressed
 from tyrefem.mechanics.solid.finite_law import FiniteLaw
 
 Array = NDArray[np.float64]
 #: Largest ratio of load or deflection to that of the start: its number of harmonics serves no further.
 FAR = 2.0
-#: Small motions of the latest footprint from which others started, by its tyre on the road.
+#: Small motions of the latest tyre from whose footprints others started, by its state: loads of one tyre share them.
 _LEADING: Cache[TautTyre] = Cache(size=1)
-#: Short waves of the latest such footprint.
-_WAVES: Cache[ShortWaves] = Cache(size=1)
+#: Short waves of the latest such footprints, at two loads.
+_WAVES: Cache[ShortWaves] = Cache(size=2)
+#: The latest tyre that started from a footprint, by its state.
+_PRESSINGS: Cache[NearbyPressing] = Cache(size=1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,7 +80,7 @@ def nearby_balance(
     >>> footprint.load
     300.0
     """
-    pressing = NearbyPressing(balance.pressing.state, balance.pressing.road, waves=_waves(near))
+    pressing = _pressing(balance.pressing, near)
     if near.balanced is None or near.balanced.shape[1] != pressing.harmonics.elements.n_dofs:
         return None
     if len(near.grid.tread.nodes) != len(pressing.tread.nodes):
@@ -107,8 +112,23 @@ def _fields(footprint: Footprint) -> dict[str, Any]:
 
 
 def _leading(near: Footprint) -> TautTyre:
-    """The tyre of a footprint in small motions: it leads the search for all footprints that start from this one."""
-    return _LEADING.get(near.pressing, lambda: TautTyre(near.pressing))
+    """The tyre of a footprint in small motions: it leads the search for all footprints that start from this tyre."""
+    return _LEADING.get(_content(near.pressing), lambda: TautTyre(near.pressing))
+
+
+def _content(tyre: TyreOnRoad) -> Hashable:
+    """What small motions of an inflated tyre depend on, equal for copies of one tyre from several files."""
+    state = tyre.state
+    support = () if state.support is None else sp.find(state.support)
+    numbers = fingerprint(state.mesh.p, state.mesh.t, state.stress, state.bulk, tautened(state).tangent, *support)
+    return numbers, state.pressure, state.fixed, state.pressurised, state.tread, state.symmetric
+
+
+def _pressing(tyre: Pressing, near: Footprint) -> NearbyPressing:
+    """A tyre to be pressed from a nearby footprint; if it was pressed from another one, its factors are there."""
+    waves = _waves(near)
+    like = _PRESSINGS.get(tyre.state, lambda: NearbyPressing(tyre.state, tyre.road, waves=waves))
+    return NearbyPressing(tyre.state, tyre.road, waves=waves, like=like)
 
 
 def _waves(near: Footprint) -> ShortWaves:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import functools
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from tyrefem.mechanics.footprint.compliance import TreadCompliance, solved_harmonics
 from tyrefem.mechanics.footprint.contact import Pressing
 from tyrefem.mechanics.footprint.footprint import Footprint
+from tyrefem.mechanics.footprint.harmonics import Harmonics
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -46,6 +47,26 @@ def few_weights(highest: int, above: int) -> Array:
 
 
 @dataclass(frozen=True, eq=False)
+class UnitMotion:
+    """A tyre in one harmonic under unit loads on its tread: displacements ``moved`` (n_free, k), m per N per radian, of
+    the degrees of freedom in an ``order``, and those of the tread, ``compliance`` (k, k)."""
+
+    order: Indices
+    moved: Array
+    compliance: Array
+
+    @classmethod
+    def of(cls, tread: TreadCompliance, n: int, like: Harmonics) -> UnitMotion:
+        """From one factorisation of a tread's harmonic; ``like``: a tyre with the same mesh, whose order serves."""
+        dofs = tread.dofs.ravel()
+        factor = tread.harmonics.factor_with_last(n, dofs, like)
+        order, size = factor[0], dofs.size
+        loads = np.zeros((len(order), size))
+        loads[-size:] = np.eye(size)
+        return cls(order, factor[1].solve(loads), tread.harmonics.compliance_of(n, factor, size))
+
+
+@dataclass(frozen=True, eq=False)
 class ShortWaves:
     """The harmonics of a footprint above those of its large motion, from which those of nearby tyres start.
 
@@ -69,11 +90,9 @@ class ShortWaves:
 
     @functools.cached_property
     def forces(self) -> Array:
-        """(harmonics - above, n_dofs) loads, N per radian."""
+        """(harmonics - above, c m) loads on the tread, N per radian."""
         loads = self.near.load_harmonics[self.above + 1 :]
-        everywhere = np.zeros((len(loads), self.tread.harmonics.elements.n_dofs))
-        everywhere[:, self.tread.dofs.ravel()] = loads.reshape(len(loads), -1)
-        return everywhere
+        return loads.reshape(len(loads), -1)
 
     @property
     def motion(self) -> Array:
@@ -81,22 +100,25 @@ class ShortWaves:
         return self.near.amplitudes[self.above + 1 :]
 
     @functools.cached_property
+    def few(self) -> dict[int, UnitMotion]:
+        """The tyre of the footprint under unit loads, at `few_harmonics`."""
+        return {n: self.unit(self.tread, n) for n in few_harmonics(self.near.harmonics, self.above)}
+
+    @functools.cached_property
     def by_few(self) -> Array:
         """(harmonics - above, n_dofs) amplitudes, m, as interpolated from `few_harmonics`."""
-        factors = {n: self.factor(self.tread, n) for n in few_harmonics(self.near.harmonics, self.above)}
-        return self.responses(factors, self.forces)
+        return self.responses(self.few, self.forces)
 
-    def factor(self, tread: TreadCompliance, n: int) -> tuple[Indices, Any]:
-        """`Harmonics.factor_with_last` of a tread with the mesh of the footprint's."""
-        return tread.harmonics.factor_with_last(n, tread.dofs.ravel(), self.tread.harmonics)
+    def unit(self, tread: TreadCompliance, n: int) -> UnitMotion:
+        """A tread with the mesh of the footprint's under unit loads."""
+        return UnitMotion.of(tread, n, self.tread.harmonics)
 
-    def responses(self, factors: dict[int, tuple[Indices, Any]], forces: Array) -> Array:
-        """(harmonics - above, n_dofs) amplitudes, m, under forces, interpolated from `few_harmonics`, whose ``factors``
-        are given."""
-        motion = np.zeros_like(forces)
-        for n, weights in zip(factors, few_weights(self.near.harmonics, self.above).T, strict=True):
-            order, factor = factors[n]
-            motion[:, order] += weights[:, None] * factor.solve(np.ascontiguousarray(forces[:, order].T)).T
+    def responses(self, few: Mapping[int, UnitMotion], forces: Array) -> Array:
+        """(harmonics - above, n_dofs) amplitudes, m, under forces on the tread (harmonics - above, c m), interpolated
+        from a tyre under unit loads at ``few`` harmonics."""
+        motion = np.zeros((len(forces), self.tread.harmonics.elements.n_dofs))
+        for unit, weights in zip(few.values(), few_weights(self.near.harmonics, self.above).T, strict=True):
+            motion[:, unit.order] += (weights[:, None] * forces) @ unit.moved.T
         return motion
 
 
@@ -106,58 +128,69 @@ class NearbyTread(TreadCompliance):
 
     Above the harmonics of its large motion, G_n = G_n0 + sum_k w_k(n) (G_k - G_k0) with a few harmonics k
     (`few_harmonics`): the difference is small and smooth in n. Motions likewise, each under its forces.
+
+    ``units`` : the tyre under unit loads by harmonic; footprints of one tyre share it.
     """
 
     waves: ShortWaves | None = None
-    _factors: dict[int, tuple[Indices, Any]] = field(default_factory=dict, init=False, repr=False)
+    units: dict[int, UnitMotion] = field(default_factory=dict, repr=False)
 
     def up_to(self, highest: int, above: int = -1) -> Array:
         """(highest - above, c, m, c, m) compliance of all harmonics above ``above``."""
         if not self._serves(highest, above):
             return super().up_to(highest, above)
         assert self.waves is not None
-        near = self.waves.tread
-        total = near.up_to(highest, above)
+        waves, shape = self.waves, (*self.dofs.shape, *self.dofs.shape)
+        total = waves.tread.up_to(highest, above).copy()
         for n, weights in zip(few_harmonics(highest, above), few_weights(highest, above).T, strict=True):
-            total += np.multiply.outer(weights, self.solved(n) - near.solved(n))
+            change = self._unit(n).compliance - waves.few[n].compliance
+            total += np.multiply.outer(weights, change.reshape(shape))
         return total
-
-    def solved(self, n: int) -> Array:
-        """(c, m, c, m) compliance of a solved harmonic, with a cache."""
-        if self.waves is None or n not in few_harmonics(self.waves.near.harmonics, self.waves.above):
-            return super().solved(n)
-        shape, size = (*self.dofs.shape, *self.dofs.shape), self.dofs.size
-        return self._solved.get(n, lambda: self.harmonics.compliance_of(n, self._factor(n), size).reshape(shape))
 
     def responses(self, loads: Array, above: int = -1) -> Array:
         """(n - above - 1, n_dofs) amplitudes, m, of the harmonics above ``above`` under loads (n, n_dofs), N per
         radian."""
-        if not self._serves(len(loads) - 1, above):
+        on_tread = np.zeros(loads.shape[1], dtype=bool)
+        on_tread[self.dofs] = True
+        if not self._serves(len(loads) - 1, above) or loads[above + 1 :, ~on_tread].any():
             return super().responses(loads, above)
         waves = self.waves
         assert waves is not None
-        factors = {n: self._factor(n) for n in few_harmonics(waves.near.harmonics, above)}
-        motion = waves.motion + waves.responses(factors, loads[above + 1 :]) - waves.by_few
-        self._factors.clear()
-        return motion
+        few = {n: self._unit(n) for n in few_harmonics(waves.near.harmonics, above)}
+        return waves.motion + waves.responses(few, loads[above + 1 :, self.dofs.ravel()]) - waves.by_few
 
     def _serves(self, highest: int, above: int) -> bool:
         return self.waves is not None and (highest, above) == (self.waves.near.harmonics, self.waves.above)
 
-    def _factor(self, n: int) -> tuple[Indices, Any]:
+    def _unit(self, n: int) -> UnitMotion:
         assert self.waves is not None
-        if n not in self._factors:
-            self._factors[n] = self.waves.factor(self, n)
-        return self._factors[n]
+        if n not in self.units:
+            self.units[n] = self.waves.unit(self, n)
+        return self.units[n]
 
 
 @dataclass(frozen=True, eq=False)
 class NearbyPressing(Pressing):
-    """A tyre and its road, near another one in contact: see `NearbyTread`."""
+    """A tyre and its road, near another one in contact: see `NearbyTread`.
+
+    ``like`` : a nearby tyre in the same state, which shares its stiffness and its motions under unit loads.
+    """
 
     waves: ShortWaves | None = None
+    like: NearbyPressing | None = None
+
+    @functools.cached_property
+    def harmonics(self) -> Harmonics:
+        """Stiffness of every harmonic."""
+        return Harmonics(self.state) if self.like is None else self.like.harmonics
 
     @functools.cached_property
     def tread(self) -> TreadCompliance:
         """Compliance of the tread."""
-        return NearbyTread(self.harmonics, self.waves)
+        return NearbyTread(self.harmonics, self.waves, {} if self.like is None else self.like.units)
+
+    @property
+    def units(self) -> dict[int, UnitMotion]:
+        """The tyre under unit loads, by harmonic."""
+        assert isinstance(self.tread, NearbyTread)
+        return self.tread.units
