@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import pickle
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from bias_tyre import bias
 
 from tyrefem.mechanics.finite_elements import FiniteElements
+from tyrefem.mechanics.footprint import nearby_balance as nearby_balance_module
 from tyrefem.mechanics.footprint.compliance import TreadCompliance
 from tyrefem.mechanics.footprint.contact import Pressing
 from tyrefem.mechanics.footprint.footprint import Footprint
@@ -107,6 +109,15 @@ def test_a_footprint_from_another_process_knows_the_compliance_of_its_short_wave
     np.testing.assert_array_equal(tread.up_to(start.harmonics, above), compliance)
     with pytest.raises(AttributeError, match="compliance"):
         tread.up_to(start.harmonics, above + 1)
+
+
+def test_copies_of_one_tyre_are_led_by_the_same_small_motions(start: Footprint, stiffer: Pressing) -> None:
+    """Drives of one pressure come from several files, but their tyre is one; another stiffness is another tyre."""
+    copy = replace(start, pressing=pickle.loads(pickle.dumps(start.pressing)))
+    assert copy.pressing is not start.pressing
+    leading = nearby_balance_module._leading(start)
+    assert nearby_balance_module._leading(copy) is leading
+    assert nearby_balance_module._leading(replace(start, pressing=stiffer)) is not leading
 
 
 def test_strain_energy_near_a_footprint_is_that_of_the_whole_compliance(
