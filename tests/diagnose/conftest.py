@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import os
+import pickle
 import shutil
 from pathlib import Path
 from typing import Any
 
 import pytest
+from filelock import FileLock
 from hidden import FINISHED, WARMER, Case, measure, study
 
 from tyrefem.diagnose.data.sensitivities import Sensitivities
@@ -18,8 +21,22 @@ from tyrefem.diagnose.layout.planned_runs import layout_sensitivities, planned
 
 @pytest.fixture(scope="session")
 def case(tmp_path_factory: pytest.TempPathFactory) -> Case:
-    """Hot road, three runs, one of them held out."""
-    folder = tmp_path_factory.mktemp("hidden")
+    """Hot road, three runs, one of them held out. Of tests side by side, the first that asks for it computes it."""
+    if "PYTEST_XDIST_WORKER" not in os.environ:
+        return hot_road(tmp_path_factory.mktemp("hidden"))
+    shared = tmp_path_factory.getbasetemp().parent / "hot-road.pickle"
+    with FileLock(f"{shared}.lock"):
+        if shared.exists():
+            # Written by another process of these tests.
+            stored: Case = pickle.loads(shared.read_bytes())
+            return stored
+        made = hot_road(tmp_path_factory.mktemp("hidden"))
+        shared.write_bytes(pickle.dumps(made))
+        return made
+
+
+def hot_road(folder: Path) -> Case:
+    """The case, computed in a folder."""
     owner = study(folder / "study")
     measure(owner, [{"name": "hot-road", "warmer_by": f"{WARMER} delta_degC"}])
     computed: list[int] = []

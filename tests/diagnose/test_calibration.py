@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from formula import STATED, effect
-from hidden import study
+from hidden import HASTY, study
 from scipy.special import expit
 
 from tyrefem.diagnose.inference.evidence import posterior
@@ -266,7 +266,7 @@ def test_a_diagnosis_with_a_calibration_states_its_conformal_set(case: Any, tmp_
         },
     }
     write_json(record, tmp_path / "calibration.json")
-    options = {"known": case.diagnosis.gap.responses, "rerun": False, "looks": 1, "largest": 1}
+    options = {"known": case.diagnosis.gap.responses, "rerun": False, "settings": HASTY}
     diagnosis = case.study.diagnose(calibration=tmp_path, **options)
     sentence = "It is this set: hot-road (95 % wanted; such sets held the true one in 480 of 500 fresh cases)."
     assert sentence in verdict_words(diagnosis)

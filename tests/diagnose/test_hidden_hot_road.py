@@ -179,7 +179,8 @@ def test_the_command_goes_on_where_it_was_and_says_so(
     flags = ["--workers", "1", "--largest", "1", "--looks", "2"]
     assert main(["diagnose", str(case.study.file), "--out", str(out), *flags]) == 0
     printed, err = capfd.readouterr()
-    assert err == ""
+    # A busy machine says how far it is.
+    assert [line for line in err.splitlines() if " after " not in line] == []
     assert printed.startswith(
         f"{len(list(case.kept.rglob('*.npz')))} simulations of an interrupted diagnosis were reused"
     )

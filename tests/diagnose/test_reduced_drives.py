@@ -221,8 +221,10 @@ def test_the_error_that_cannot_change_a_verdict_grows_with_its_lead(
     assert allowed_error(cast(Ranking, result), DEFAULT) == pytest.approx(allowed)
 
 
-#: Each kind of discrepancy is tried in one size, and no effect in single runs.
-FEWER = DiagnosisSettings(largest=1, looks=1, heat_widths=(3.0,), discrepancy_sizes=(1.0,), odd_run_share=0.0)
+#: Each kind of discrepancy is tried in one size and beside one set, and no effect in single runs.
+FEWER = DiagnosisSettings(
+    largest=1, looks=1, heat_widths=(3.0,), discrepancy_sizes=(1.0,), odd_run_share=0.0, beside_sets=1, beside_steps=2
+)
 
 
 def diagnosed(drives: Drives, **options: Any) -> DiagnosisData:
