@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from tyrefem.cli.durations import cache_file, expected, remember
-from tyrefem.cli.progress import EVERY, Stage, progress, stages
+from tyrefem.cli.progress import EVERY, Stage, counted, progress, stages
 from tyrefem.cli.shell import speaking
 
 
@@ -80,6 +80,17 @@ def test_the_line_in_a_log_tells_what_is_left(capfd: pytest.CaptureFixture[str])
         tick("simulations", 1, 2)
         time.sleep(2.4)
     assert capfd.readouterr().err == "tyrefem: simulations, 50% after 0 min, about 2 s left\n"
+
+
+def test_what_is_left_does_not_follow_from_what_comes_first(capfd: pytest.CaptureFixture[str]) -> None:
+    with stages(every=4.7) as tick:
+        step = counted(tick, "tyre, first its strain cycles", "tyre", 100.0)
+        time.sleep(2.2)
+        step(1.0)
+        time.sleep(2.3)
+        step(50.0)
+        time.sleep(0.4)
+    assert capfd.readouterr().err == "tyrefem: tyre, 50% after 0 min, about 2 s left\n"
 
 
 def test_a_bar_on_a_terminal(capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:

@@ -68,6 +68,15 @@ def progress(description: str, total: float = 0.0) -> Iterator[Callable[[float],
         yield lambda done: tick(description, done, total)
 
 
+def counted(tick: Tick, first: str, name: str, total: float) -> Callable[[float], None]:
+    """A function of the work done in the stage ``name``; the stage ``first`` before it, without count, begins here.
+
+    The time of what comes first, such as strain cycles by finite elements, says nothing of the time that is left.
+    """
+    tick(first, 0.0, total if first == name else 0.0)
+    return lambda done: tick(name, done, total)
+
+
 @contextmanager
 def stages(*, every: float = EVERY) -> Iterator[Tick]:
     """Show the progress of several stages. Yields a function of the stage, work done and total (0: not known)."""

@@ -16,7 +16,7 @@ from tyrefem.cli.common import (
     settings,
     warn,
 )
-from tyrefem.cli.progress import progress, stages
+from tyrefem.cli.progress import counted, progress, stages
 from tyrefem.cli.shell import answer_with, notify, say
 from tyrefem.errors import InputError, Interrupted
 from tyrefem.interruption import interruption_delayed, keeping
@@ -79,8 +79,8 @@ def _single(study: Study, folder: Path, pictures: bool, vtk: bool, revolved: boo
 
     warned = warn(study.warnings)
     begins = f"{study.name}{RunEstimate.of(study).beginning}"
-    with progress(begins, study.card.drive.end) as step:
-        result = study.run(step, partial=True)
+    with stages() as tick:
+        result = study.run(counted(tick, begins, study.name, study.card.drive.end), partial=True)
     reached = f"{result.times[-1]:g} s" if result.history.interrupted else ""
     tables = f"the tables up to {reached}" if reached else "the tables"
     with keeping(f"{tables} are in {folder}, pictures and VTK files are not complete"):
