@@ -34,6 +34,15 @@ def test_good_files(file: str, capfd: pytest.CaptureFixture[str]) -> None:
     assert err == ""
 
 
+def test_a_study_tells_how_its_tables_are_read(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    card = (library.shipped() / "studies/nasa-22x5.5-8pr/study.toml").read_text(encoding="utf-8")
+    (tmp_path / "study.toml").write_text(card + '\n[[measured]]\ntable = "log.csv"\n', encoding="utf-8")
+    (tmp_path / "log.csv").write_text("time [s],crown-inner [degC]\n0,25\n10,OL\n20,26\n", encoding="utf-8")
+    assert main(["check", str(tmp_path)]) == 0
+    out = capfd.readouterr().out
+    assert "1 measured run; log.csv: no reading in 1 cell of 'crown-inner [degC]' (OL)" in out
+
+
 def test_every_shipped_card_is_good(capfd: pytest.CaptureFixture[str]) -> None:
     cards = [path for kind in library.FOLDERS for path in library.names(kind).values()]
     assert len(cards) > 8

@@ -157,6 +157,8 @@ def _card(path: Path) -> str:
         warn(warning.within(file=path) for warning in card.warnings())
         return f"a material card, {card.title}"
     from tyrefem.api import study
+    from tyrefem.compare.experiment import experiments
+    from tyrefem.compare.omitted import table_notes
     from tyrefem.compare.study_check import check_study
     from tyrefem.mechanics.cautions import warnings_of
 
@@ -171,9 +173,11 @@ def _card(path: Path) -> str:
         return f"a campaign of {counted(len(campaign.cases), 'case')}"
     tables = check_study(checked)
     warn(checked.warnings)
+    of_tables = table_notes(experiments(checked)) if tables else []
+    notes = "".join(f"; {note.removeprefix('Note: ')}" for note in of_tables)
     return (
         f"a study of {counted(len(checked.card.drive.phases), 'phase')}, {checked.card.drive.end:g} s, "
-        f"{counted(len(checked.sensors), 'sensor')}, {counted(tables, 'measured run')}"
+        f"{counted(len(checked.sensors), 'sensor')}, {counted(tables, 'measured run')}{notes}"
     )
 
 
