@@ -21,7 +21,7 @@ TABLES = {
         "no fitted run has a reading within the simulated drive",
     ),
     "only the start": ("time [s],crown-outer [degC]\n0,25\n", "run 'table' has readings at 0 s only"),
-    "broken thermocouple": ("time [s],crown-outer [degC]\n0,25\n60,9999\n", "9999"),
+    "broken thermocouple": ("time [s],crown-outer [degC]\n0,25\n60,1372\n", "1372"),
 }
 
 
