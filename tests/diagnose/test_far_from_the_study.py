@@ -61,7 +61,7 @@ def test_near_the_study_sensitivities_are_not_taken_again() -> None:
     beside = searched(made(0.05))
     assert beside.change < CHANGED
     beside.further()
-    assert beside._here is None
+    assert beside.renewed is None
     assert beside.best.members == (SLIP,)
 
 

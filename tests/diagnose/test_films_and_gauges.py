@@ -192,3 +192,29 @@ def test_gauges_are_those_of_the_regions_that_the_study_does_not_state() -> None
     s = [0.5 * study.section.line.length]
     inner, outer = thicker.section.total_thickness(s), study.section.total_thickness(s)
     assert inner[0] > outer[0]
+
+
+def thin(values: Mapping[str, float]) -> np.ndarray:
+    """A gauge whose response is nearly the bump of an effect."""
+    bump = np.exp(-(((S - 0.2) / 0.07) ** 2) / 2)
+    return law({**values, GAUGE.key: 0.0}) + 150.0 * values.get(GAUGE.key, 0.0) * bump
+
+
+@pytest.mark.parametrize("gauge_sd", [DEFAULT.gauge_sd, 1e-6])
+def test_an_effect_that_a_gauge_explains_as_well_is_not_named(gauge_sd: float) -> None:
+    """A tread 14 % thinner than stated, beside another strain energy: half waves and the effect explain the readings,
+    so the search asks for no gauge."""
+    gauge = replace(GAUGE, sd=gauge_sd)
+    noise = np.random.default_rng(3).normal(size=len(S))
+    steep = 40.0 * (1 + S) * 0.25 * np.cos(2 * np.pi * S)
+    data = case(thin, thin({GAUGE.key: 0.14}) + steep + noise, EVERY, SETTINGS, further=(*SHAPES, gauge))
+    problem = selection(data)
+    scored = problem.settled(ForwardSelection().search(problem))
+    judgement = replace(judge(ranked(scored), lambda members: None, SETTINGS), verdict=UNEXPLAINED)
+    for explained in (False, True):
+        robust = robustness(problem, scored, certain=False, explained=explained)
+        assert robust.models[0].name == ENERGY
+        of_energy = [model for model in robust.models if model.name == ENERGY]
+        assert [FURTHER in model.words for model in sorted(of_energy, key=lambda model: model.words)] == [False, True]
+        named = beside_discrepancies(judgement, robust, SETTINGS).members
+        assert named == (() if gauge_sd > 1e-3 else (HOT,))

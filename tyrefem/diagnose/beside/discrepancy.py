@@ -97,10 +97,7 @@ def without(discrepancy: Discrepancy, unknowns: Collection[Unknown]) -> Discrepa
 def with_courses(residuals: Residuals, discrepancy: Discrepancy, size: float) -> Discrepancy:
     """A discrepancy with errors of the readings that neighbours in time share too, of ``size`` (K)."""
     known, further = discrepancy.shared_error, _shared(residuals, _courses(residuals, size))
-    if known is not None:
-        fitted, held_out = np.hstack([known.fitted, further.fitted]), np.hstack([known.held_out, further.held_out])
-        further = SharedError(fitted, held_out)
-    return replace(discrepancy, size=size, shared_error=further)
+    return replace(discrepancy, size=size, shared_error=further if known is None else known.beside(further))
 
 
 def discrepancies(residuals: Residuals) -> Iterator[Discrepancy]:
@@ -132,6 +129,17 @@ def discrepancies(residuals: Residuals) -> Iterator[Discrepancy]:
             yield missing_heat_beside(residuals, (), width)
     for size in residuals.settings.discrepancy_sizes:
         yield Discrepancy(READINGS, size, _shared(residuals, _courses(residuals, size)))
+
+
+def with_films_and_gauges(residuals: Residuals, discrepancy: Discrepancy) -> Discrepancy | None:
+    """A discrepancy in which gauges of the section and speed laws of films differ, too; None if it has them, or if the
+    study has none."""
+    more = films_and_gauges(residuals)
+    if discrepancy.further or not more:
+        return None
+    part = _shared(residuals, [_of_all(residuals, more, 1.0)])
+    shared = part if discrepancy.shared_error is None else part.beside(discrepancy.shared_error)
+    return replace(discrepancy, shared_error=shared, further=more)
 
 
 def films_and_gauges(residuals: Known) -> tuple[Unknown, ...]:

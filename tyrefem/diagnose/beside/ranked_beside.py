@@ -41,7 +41,8 @@ class RankedBeside(Brief):
     """Sets beside one discrepancy model: those fitted beside it, and estimates ln(prior) + ln evidence of others.
 
     ``open``: effects that may be named; if there are any, of the sets with all of them only the best one is fitted.
-    ``left_out``: effects that do not compete.
+    ``left_out``: effects that do not compete. ``renewed``: residuals with sensitivities to effects at the best fit, if
+    they were taken.
     """
 
     problem: SelectionProblem
@@ -50,15 +51,15 @@ class RankedBeside(Brief):
     left_out: Members = ()
     fits: dict[Members, FittedSet] = field(default_factory=dict)
     estimates: dict[Members, float] = field(default_factory=dict)
-    _here: Residuals | None = None
+    renewed: Residuals | None = None
 
     def _title(self) -> str:
         return f"{self.discrepancy.name}, {len(self.fits)} fits"
 
     @property
     def residuals(self) -> Residuals:
-        """The residuals beside the discrepancy; with sensitivities to effects at the best fit if they were taken."""
-        return self._here or self._at_origin
+        """The residuals beside the discrepancy."""
+        return self.renewed or self._at_origin
 
     @functools.cached_property
     def candidates(self) -> Members:
@@ -150,7 +151,7 @@ class RankedBeside(Brief):
         )
         self._take(first_fits(residuals, problem.predictions, restarted, None, problem._count))
         self.estimates |= {members: value for members, value in estimates.items() if members not in self.fits}
-        if self.far and self._here is None:
+        if self.far and self.renewed is None:
             self._renew()
         self._estimate()
         if self.p_value <= USUAL_P:
@@ -168,7 +169,7 @@ class RankedBeside(Brief):
         numbers = self.residuals.fitted
         (columns,) = problem.predictions.jacobians([point], numbers, problem._count)
         sensitive = self.residuals.sensitivities.with_columns(unknowns, dict(zip(numbers, columns, strict=True)))
-        self._here = replace(self.residuals, sensitivities=sensitive)
+        self.renewed = replace(self.residuals, sensitivities=sensitive)
 
     def further(self) -> None:
         """Fit the best estimated sets and estimate from them: twice, and once more if a better one was found last.
@@ -179,7 +180,7 @@ class RankedBeside(Brief):
         Estimates from sensitivities at x = 0 do not count where the fits have changed the readings much: beside energy
         modes of 26 % that of a tread's slip was 20 nats below its fit.
         """
-        if self._by_itself and self._here is None and self.near and self.change > CHANGED:
+        if self._by_itself and self.renewed is None and self.near and self.change > CHANGED:
             self._renew()
             self.estimates.clear()
             self._estimate()

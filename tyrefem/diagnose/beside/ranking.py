@@ -8,7 +8,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from tyrefem.diagnose.beside.discrepancy import ENERGY, HEAT, NONE, READINGS, Discrepancy, discrepancies, without
+from tyrefem.diagnose.beside.discrepancy import (
+    ENERGY,
+    HEAT,
+    NONE,
+    READINGS,
+    Discrepancy,
+    discrepancies,
+    with_films_and_gauges,
+    without,
+)
 from tyrefem.diagnose.beside.ranked_beside import USUAL_P, RankedBeside, evidence
 from tyrefem.diagnose.beside.robustness import Robustness, UnderDiscrepancy, shares
 from tyrefem.diagnose.data.residuals import Residuals
@@ -88,14 +97,34 @@ def robustness(
         ordered = tuple(sorted(models, key=lambda model: -model.probability))
         return Robustness(ordered, log_evidence=float(np.logaddexp.reduce(scores)))
 
-    first = result()
-    if not explained:
-        return _with_held_out(problem, first)
-    probable = {model.name for model in first.models if model.probability > PROBABLE}
-    unfinished = [beside for name, sizes in ranked.items() if name in probable or not certain for beside in sizes]
-    for beside in unfinished:
-        beside.further()
-    return _with_held_out(problem, result() if unfinished else first)
+    robust = result()
+    if explained:
+        probable = {model.name for model in robust.models if model.probability > PROBABLE}
+        unfinished = [beside for name, sizes in ranked.items() if name in probable or not certain for beside in sizes]
+        for beside in unfinished:
+            beside.further()
+        robust = result() if unfinished else robust
+    if ENERGY in ranked and (fuller := _with_gauges(problem, ranked[ENERGY][0], robust)):
+        ranked[fuller.discrepancy.words] = [fuller]
+        robust = result()
+    return _with_held_out(problem, robust)
+
+
+def _with_gauges(problem: SelectionProblem, energy: RankedBeside, robust: Robustness) -> RankedBeside | None:
+    """Sets beside another strain energy with other gauges and speed laws of films, too, which half waves may hide.
+
+    A tread that is thinner than stated was read as a worn one, or as slip. None where the model as it is leads, where
+    no effect may be named, or where the strain energy has them already.
+    """
+    may_be_named = robust.open(problem.settings.challenged_probability)
+    fuller = with_films_and_gauges(problem.residuals, energy.discrepancy)
+    if fuller is None or not may_be_named or robust.models[0].name == NONE:
+        return None
+    here = None if energy.renewed is None else replace(energy.renewed, shared_error=fuller.shared_error)
+    beside = RankedBeside(problem, fuller, may_be_named, renewed=here)
+    beside.begin(energy.fits)
+    beside.further()
+    return beside
 
 
 def _without_errors(chosen: list[RankedBeside], tried: Sequence[RankedBeside]) -> list[RankedBeside]:
@@ -125,7 +154,7 @@ def _with_held_out(problem: SelectionProblem, robust: Robustness) -> Robustness:
     for member in candidates:
         left = without(leading.discrepancy, member.amplitudes)
         here = replace(leading.residuals, shared_error=left.shared_error)
-        beside = RankedBeside(problem, left, left_out=(member,), _here=here)
+        beside = RankedBeside(problem, left, left_out=(member,), renewed=here)
         beside.begin(leading.fits)
         beside.further()
         held_out[member.key] = max(fit.held_out for fit in beside.fits.values())

@@ -28,6 +28,10 @@ class SharedError(Brief):
     def _title(self) -> str:
         return f"{self.fitted.shape[1]} columns"
 
+    def beside(self, other: SharedError) -> SharedError:
+        """Both errors; the columns of this one first."""
+        return SharedError(np.hstack([self.fitted, other.fitted]), np.hstack([self.held_out, other.held_out]))
+
     @cached_property
     def _modes(self) -> tuple[Array, Array]:
         """Orthogonal columns C V (n, k), and (1 + t)^1/2 (k,) with C^T C = V t V^T."""
