@@ -203,7 +203,6 @@ BAD = {
     "no run name": ("time [s],run,crown [degC]\n0,a,25\n1,,26\n", "line 3: the run column is empty"),
     "silent run": ("time [s],run,crown [degC]\n0,a,25\n0,b,\n", "run 'b' has no reading at all"),
     "binary": (b"time [s],crown [degC]\n0,\x00\x01\x02\n", "not a text file (control character in line 2)"),
-    "spreadsheet": (b"PK\x03\x04rest", "is a spreadsheet or archive"),
 }
 
 

@@ -63,7 +63,8 @@ def identify(
 
     Parameters
     ----------
-    rig : name, path or card. tables : CSV files whose runs have the card's names; default: those beside the card.
+    rig : name, path or card.
+    tables : CSV files or workbooks whose runs have the card's names; default: CSV files beside the card.
     tests, without, linear, fineness, progress : see `tyrefem.heating_test.identification.identify`.
 
     Raises

@@ -55,7 +55,7 @@ class StudyQuestions(studies.StudyData):
 
         Parameters
         ----------
-        table : CSV file, pandas table, or a list of these; None: the study's ``[[measured]]`` entries.
+        table : CSV file or workbook, pandas table, or a list of these; None: the study's ``[[measured]]`` entries.
         result : the study's result, if it is known.
         inputs : also runs with each uncertain number one standard deviation higher. k : coverage factor, 2 for 95 %.
         ignore : columns to leave out. rename : column -> sensor.

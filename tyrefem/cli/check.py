@@ -26,7 +26,7 @@ def check(
         str,
         typer.Argument(
             metavar="FILE",
-            help="A study, sweep, section or material (TOML, or its name), a table (CSV), or own plugins (.py).",
+            help="A study, sweep, section or material (TOML, or its name), a table (CSV, Excel), or own plugins (.py).",
         ),
     ],
     study: Annotated[

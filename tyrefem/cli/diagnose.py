@@ -39,7 +39,7 @@ def diagnose(
     study: StudyArgument,
     table: Annotated[
         Path | None,
-        typer.Argument(metavar="[TABLE]", help="CSV of thermocouple histories; default: the study's tables."),
+        typer.Argument(metavar="[TABLE]", help="CSV or Excel file of readings; default: the study's tables."),
     ] = None,
     changes: SetOption = None,
     case: CaseOption = None,

@@ -36,7 +36,7 @@ def plan(
         Path | None,
         typer.Argument(
             metavar="[TABLE|FOLDER]",
-            help="CSV of thermocouple histories, or the folder of an earlier diagnosis; default: before any data.",
+            help="CSV or Excel file of readings, or the folder of an earlier diagnosis; default: before any data.",
         ),
     ] = None,
     changes: SetOption = None,

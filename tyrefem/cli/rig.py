@@ -72,7 +72,9 @@ def identify(
     rig: RigArgument,
     tables: Annotated[
         list[Path] | None,
-        typer.Argument(metavar="[TABLE...]", help="Measured CSV; runs named as in the card. Default: beside the card."),
+        typer.Argument(
+            metavar="[TABLE...]", help="CSV or Excel files; runs named as in the card. Default: CSV beside it."
+        ),
     ] = None,
     out: OutOption = None,
     base: Annotated[
@@ -129,7 +131,7 @@ def identify(
 def layers(
     rig: RigArgument,
     tables: Annotated[
-        list[Path] | None, typer.Argument(metavar="[TABLE...]", help="Measured CSV files; default: simulated.")
+        list[Path] | None, typer.Argument(metavar="[TABLE...]", help="CSV or Excel files; default: simulated.")
     ] = None,
     out: OutOption = None,
     rename: RenameOption = None,

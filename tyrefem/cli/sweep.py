@@ -77,7 +77,7 @@ def sweep(
         int | None, typer.Option(min=0, help="Seed of the sample; default 1.", rich_help_panel=VARIANTS)
     ] = None,
     cases: Annotated[
-        str | None, typer.Option(help="CSV file of variants (sample 'list').", rich_help_panel=VARIANTS)
+        str | None, typer.Option(help="CSV or Excel file of variants (sample 'list').", rich_help_panel=VARIANTS)
     ] = None,
     limit: Annotated[
         list[str] | None,

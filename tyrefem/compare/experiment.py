@@ -353,7 +353,7 @@ def _path(table: str | Path) -> Path:
 
 def _no_table(table: object) -> InputError:
     return InputError(
-        f"a value of type {type(table).__name__} is no measured table; allowed: a CSV file's path, a pandas DataFrame "
-        "with 'time [s]' and sensors like 'crown [degC]', a MeasuredRun, or a list of these",
+        f"a value of type {type(table).__name__} is no measured table; allowed: the path of a CSV file or workbook, a "
+        "pandas DataFrame with 'time [s]' and sensors like 'crown [degC]', a MeasuredRun, or a list of these",
         field="table",
     )

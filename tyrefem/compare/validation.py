@@ -64,8 +64,9 @@ def compare(
     Parameters
     ----------
     study : the study; its sensors give names, noise, accuracy and uncertainty of position.
-    table : CSV file (see `tyrefem.measured.read_table`), pandas DataFrame with the same columns, runs already read, or
-        a list of these; None = the study's ``[[measured]]`` entries, with their drives, noise and offsets.
+    table : CSV file or workbook (see `tyrefem.measured.read_table`), pandas DataFrame with the same columns, runs
+        already read, or a list of these; None = the study's ``[[measured]]`` entries, with their drives, noise and
+        offsets.
     result : the study's result if it is known; used for every run at the study's drive, and for a single run in any
         case if it is the result of another study (amended, or with another drive).
     inputs : run the study with each number of ``study.uncertainty`` one standard deviation higher. These are the

@@ -97,7 +97,8 @@ def identify(
 
     Parameters
     ----------
-    rig : name, path or card. tables : CSV files whose runs have the card's names; default: those beside the card.
+    rig : name, path or card.
+    tables : CSV files or workbooks whose runs have the card's names; default: CSV files beside the card.
     tests : tests already read, instead of tables.
     without : sensors that the tables need not have.
     linear : allow properties that are linear in temperature, if the evidence supports them.

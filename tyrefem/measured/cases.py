@@ -1,4 +1,4 @@
-"""A table of cases: CSV whose columns are dotted names of a study's values, one row per case."""
+"""A table of cases (CSV, or a sheet): columns are dotted names of a study's values, one row per case."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Any
 
 from tyrefem.errors import InputError
 from tyrefem.measured.heading import is_time, parts
-from tyrefem.measured.lines import DELIMITERS, LONGEST_PREAMBLE, decode
+from tyrefem.measured.lines import DELIMITERS, LONGEST_PREAMBLE, decode, texts
 
 _HEADING = re.compile(r"^\s*([^\[\]]+?)\s*(?:\[([^\[\]]*)\])?\s*$")
 _DECIMAL_COMMA = re.compile(r"^(\s*[-+]?\d+),(\d+(?:[eE][-+]?\d+)?\s*)$")
@@ -29,7 +29,7 @@ class Case:
 
 
 def read_cases(path: Path) -> tuple[Case, ...]:
-    """The cases of a CSV file.
+    """The cases of a CSV file or of a workbook with one sheet.
 
     The heading names each column: ``name``, optionally ``note``, and dotted names such as ``drive.load [lbf]``, whose
     unit is added to every number. Lines that begin with ``#`` are comments; an empty cell keeps the study's value.
@@ -45,7 +45,7 @@ def read_cases(path: Path) -> tuple[Case, ...]:
     >>> [case.changes for case in read_cases(file)]
     [{'drive.speed': '20 mph'}, {'drive.speed': '35 mph'}]
     """
-    lines = _content(path)
+    lines = _content(decode(path))
     if len(lines) < 2:
         raise InputError("needs a heading and at least one case", file=path)
     delimiter = _delimiter(lines[0][1])
@@ -75,11 +75,14 @@ def read_cases(path: Path) -> tuple[Case, ...]:
 
 
 def looks_like_cases(path: Path) -> bool:
-    """True if the first row of a CSV file is the heading of a table of cases, not of thermocouple histories.
+    """True if the first row of a table is the heading of a table of cases, not of thermocouple histories.
 
     A logger's file may begin with lines such as "name,Lab 3"; its heading, with a time and units, follows.
     """
-    lines = [line for _, line in _content(path)[:LONGEST_PREAMBLE]]
+    of_sheets = texts(path)
+    if len(of_sheets) > 1:
+        return False
+    lines = [line for _, line in _content(*of_sheets.values())[:LONGEST_PREAMBLE]]
     cells = [cell.strip(' "') for cell in lines[0].split(_delimiter(lines[0]))] if lines else []
     return "name" in cells and not any(_is_of_histories(line) for line in lines)
 
@@ -90,9 +93,9 @@ def _is_of_histories(line: str) -> bool:
     return any(any(map(is_time, cells)) and any(parts(cell)[1] for cell in cells) for cells in rows)
 
 
-def _content(path: Path) -> list[tuple[int, str]]:
+def _content(text: str) -> list[tuple[int, str]]:
     """The lines that are not blank or comments, with their numbers in the file."""
-    lines = enumerate(re.split("\r\n|\r|\n", decode(path)), 1)
+    lines = enumerate(re.split("\r\n|\r|\n", text), 1)
     return [(number, line) for number, line in lines if line.strip() and not line.lstrip().startswith("#")]
 
 

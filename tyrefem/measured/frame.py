@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING
 
 from tyrefem.errors import InputError
 from tyrefem.measured.heading import in_brackets, is_time
-from tyrefem.measured.lines import split
+from tyrefem.measured.lines import decode, split
 from tyrefem.measured.names import in_table_words
+from tyrefem.measured.sheet import Sheet
 from tyrefem.measured.table import TableLines
 
 if TYPE_CHECKING:
@@ -44,10 +45,11 @@ def frame_lines(frame: pd.DataFrame, rename: Mapping[str, str] | None = None) ->
         file = Path(folder) / "measured.csv"
         _flat(frame, rename or {}).to_csv(file, index=False, lineterminator="\n", date_format=STAMP)
         try:
-            lines = split(file, rename)
+            lines = split(decode(file), file, rename)
         except InputError as error:
             raise InputError(error.message, field=error.field, file=PLACE) from None
-    return TableLines(lines, PLACE, file.stem, in_memory=True)
+    sheet = Sheet(lines, PLACE, file.stem, in_memory=True)
+    return TableLines((sheet,), PLACE, file.stem, in_memory=True)
 
 
 def _flat(frame: pd.DataFrame, rename: Mapping[str, str]) -> pd.DataFrame:

@@ -1,4 +1,4 @@
-"""A logger's file as numbered rows of cells: encoding, comments and delimiter recognised."""
+"""A logger's file, or a sheet of a workbook, as numbered rows of cells: encoding, comments, delimiter recognised."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ from tyrefem.estimates.work import TEXT, check_memory
 from tyrefem.measured.heading import is_time, parts
 from tyrefem.measured.names import in_table_words
 from tyrefem.measured.unit_row import with_units
+from tyrefem.measured.workbook import is_workbook, sheet_texts
 from tyrefem.output import note_input
 
 #: Largest size of a table; larger files are mistakes (a video, a raw waveform). 5 million rows of 10 sensors fit.
@@ -43,12 +44,26 @@ class Lines:
     notes: tuple[str, ...] = ()
 
 
+class NoTableError(InputError):
+    """A text without any heading of a table of histories."""
+
+
 def decode(path: Path) -> str:
-    """The text of a file: UTF-8 with or without mark, UTF-16 with mark, else Latin-1. Letters and marks are composed.
+    """The text of a file, or of the only filled sheet of a workbook. Errors of `texts`, or several sheets."""
+    of_sheets = texts(path)
+    if len(of_sheets) > 1:
+        raise InputError(f"has several sheets ({', '.join(of_sheets)}): keep one of them", file=path)
+    return next(iter(of_sheets.values()))
+
+
+def texts(path: Path) -> dict[str, str]:
+    """The texts of a file by sheet of a workbook; any other file has one, "".
+
+    UTF-8 with or without mark, UTF-16 with mark, else Latin-1. Letters and marks are composed.
 
     Raises
     ------
-    InputError : no such file, a folder, empty, far too large, not text.
+    InputError : no such file, a folder, empty, far too large, no text and no workbook.
     """
     note_input(path)
     try:
@@ -62,8 +77,8 @@ def decode(path: Path) -> str:
             raise error.within(file=path) from None
         reason = f"cannot be read: {getattr(error, 'strerror', None) or error}{_beside(path)}"
         raise InputError(reason, file=path) from None
-    if data.startswith((b"PK\x03\x04", b"\xd0\xcf\x11\xe0")):
-        raise InputError("is a spreadsheet or archive, not text: save the sheet as CSV", file=path)
+    if is_workbook(data):
+        return {name: unicodedata.normalize("NFC", text) for name, text in sheet_texts(data, path).items()}
     try:
         marked = data.startswith((b"\xff\xfe", b"\xfe\xff"))
         text = data.decode("utf-16" if marked else "utf-8-sig")
@@ -72,10 +87,12 @@ def decode(path: Path) -> str:
     binary = _CONTROL.search(text)
     if binary:
         line = text.count("\n", 0, binary.start()) + 1
-        raise InputError(f"is not a text file (control character in line {line}): a CSV is wanted", file=path)
+        raise InputError(
+            f"is not a text file (control character in line {line}): a CSV or a workbook is wanted", file=path
+        )
     if not text.strip():
         raise InputError("is empty", file=path)
-    return unicodedata.normalize("NFC", text)
+    return {"": unicodedata.normalize("NFC", text)}
 
 
 def _beside(path: Path) -> str:
@@ -87,8 +104,8 @@ def _beside(path: Path) -> str:
     return nearest(path.name, names) if names else ""
 
 
-def split(path: Path, rename: Mapping[str, str] | None = None) -> Lines:
-    """The cells of a table. Blank lines, and lines that begin with ``#`` or ``//``, are not rows.
+def split(text: str, path: Path, rename: Mapping[str, str] | None = None) -> Lines:
+    """The cells of a table's text. Blank lines, and lines that begin with ``#`` or ``//``, are not rows.
 
     A line that begins with ``;`` is a row (in a semicolon table its first cell is empty), not a comment.
     Up to 100 lines of free text may precede the heading, which is the first line with a time column. Units in a row
@@ -96,14 +113,15 @@ def split(path: Path, rename: Mapping[str, str] | None = None) -> Lines:
 
     Parameters
     ----------
-    rename : column -> name, for a time column that is called otherwise.
+    path : the file, in errors. rename : column -> name, for a time column that is called otherwise.
 
     Raises
     ------
-    InputError : errors of `decode` and `with_units`; no time column; rows longer or shorter than the heading.
+    NoTableError : no time column.
+    InputError : errors of `with_units`; rows longer or shorter than the heading.
     """
     rename = rename or {}
-    lines = re.split("\r\n|\r|\n", decode(path))
+    lines = re.split("\r\n|\r|\n", text)
     comments, content = [], []
     for number, line in enumerate(lines, 1):
         if _COMMENT.match(line):
@@ -111,9 +129,11 @@ def split(path: Path, rename: Mapping[str, str] | None = None) -> Lines:
         elif line.strip(DELIMITERS + ' "'):
             content.append((number, line))
     if not content:
-        raise InputError("has only comments, no heading and no readings", file=path)
+        raise NoTableError("has only comments, no heading and no readings", file=path)
     try:
         position, delimiter = _heading(content, path, rename)
+    except NoTableError:
+        raise
     except InputError as error:
         raise error.within(file=path) from None
     number, line = content[position]
@@ -148,7 +168,7 @@ def _heading(content: list[tuple[int, str]], path: Path, rename: Mapping[str, st
     if best is not None:
         return best[1:]
     number, line = content[0]
-    raise InputError(
+    raise NoTableError(
         f"line {number}: no time column in {line.strip()[:60]!r}; the heading must have "
         "'time [s]' (or [min], [h], [ms]) and one column per sensor, like 'crown [degC]'; "
         "rename a time column of another name to 'time'",

@@ -1,24 +1,18 @@
-"""A measured table: CSV of one run, or of several with a ``run`` column."""
+"""A measured table: CSV or workbook of one run, or of several with a ``run`` column or a sheet each."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
-from numbers import Real
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
 from pathlib import Path
 
-import numpy as np
-from numpy.typing import NDArray
-
 from tyrefem.errors import InputError
-from tyrefem.measured.columns import bare_units, check_decimal_mark
 from tyrefem.measured.heading import parts
-from tyrefem.measured.lines import Lines, split
-from tyrefem.measured.names import ColumnNames, in_table_words, missing_columns_error
+from tyrefem.measured.lines import Lines, NoTableError, split, texts
+from tyrefem.measured.names import ColumnNames, missing_columns_error
 from tyrefem.measured.run import MeasuredRun
-from tyrefem.measured.spikes import spike_notes
-from tyrefem.measured.table_columns import TableColumns, is_ignored, is_run
+from tyrefem.measured.sheet import Sheet
 from tyrefem.output import as_path
 
 
@@ -36,11 +30,12 @@ def read_table(
     run. Units may stand in a row of their own. Columns in a unit of pressure, speed, force, length or
     power are not sensors and are left out (`MeasuredRun.channels`).
     Comma, semicolon or tab between columns; decimal comma or point; UTF-8, UTF-16 or Latin-1. Empty, ``NaN``, ``-``,
-    ``--``, ``-9999`` = no reading. ``#`` and ``//`` begin a comment.
+    ``--``, ``-9999`` = no reading. ``#`` and ``//`` begin a comment. Of a workbook (xlsx, xlsm, xlsb, xls, ods) the
+    visible sheets with a time column are read; several are runs with the sheets' names.
 
     Parameters
     ----------
-    path : the CSV file.
+    path : the CSV file or workbook.
     time_offset : s, added to every time of the table (model time = table time + offset).
     rename : column name -> sensor name, or ``time`` or ``run``. A time column without unit is given one so:
         ``{"Dauer": "time [mm:ss]"}``.
@@ -91,72 +86,76 @@ class MeasuredTable:
 
 @dataclass(frozen=True, eq=False)
 class TableLines:
-    """The rows of a table whose columns are not yet read.
+    """The rows of a file or a frame: one sheet, or several of a workbook.
 
     Parameters
     ----------
-    lines : heading and rows. file : the table in errors. name : of the run of a table without a run column.
-    in_memory : whether the table is no file.
+    sheets : several are runs with the sheets' names, unless they have run columns. file : the table in errors.
+    name : of the run of a single sheet without a run column. in_memory : whether the table is no file.
     """
 
-    lines: Lines
+    sheets: tuple[Sheet, ...]
     file: Path
     name: str
     in_memory: bool = False
 
     def runs(self, names: ColumnNames) -> tuple[str, ...]:
         """Names of the runs, if no more than one column has them."""
-        ignore, heading = frozenset(names.ignore), enumerate(self.lines.heading)
-        named = ((i, in_table_words(text, names.rename)) for i, text in heading if not is_ignored(text, ignore))
-        columns = [column for column, text in named if is_run(text)]
-        return tuple(dict.fromkeys(row[columns[0]] for row in self.lines.rows)) if columns else (self.name,)
+        return tuple(dict.fromkeys(run for sheet in self.sheets for run in sheet.runs(names)))
 
     def read(
         self, *, time_offset: float = 0.0, rename: Mapping[str, str] | None = None, ignore: Iterable[str] = ()
     ) -> MeasuredTable:
         """The runs; arguments and errors as of `read_table`, without the check that the columns to rename exist."""
-        import pandas as pd
-
-        lines, file = self.lines, self.file
-        if not isinstance(time_offset, Real) or not math.isfinite(time_offset):
-            raise InputError(f"{time_offset!r} is not a finite number of seconds", field="time_offset", file=file)
-        columns = TableColumns.of(lines, dict(rename or {}), frozenset(ignore), file)
-        if not lines.rows:
-            raise InputError("has a heading but no readings", file=file)
-        time, sensors = columns.time, columns.sensors
-        check_decimal_mark(lines.rows, lines.numbers, [time.column, *(sensor.column for sensor in sensors)], file)
-        readings = {sensor.name: sensor.readings(lines, file) for sensor in sensors}
-        runs = []
-        rows_of_runs = _rows_of_runs(columns.run, lines, file, self.name)
-        source = None if self.in_memory else file
-        times_of_runs, notes = time.of_runs(lines, rows_of_runs, time_offset, file)
-        of_sensors = (note for sensor in sensors for note in sensor.notes(lines, readings[sensor.name]))
-        notes = (*lines.notes, *notes, *bare_units(sensors), *of_sensors)
-        for sensor in sensors:
-            notes += spike_notes(sensor.heading, lines.numbers, readings[sensor.name], rows_of_runs, times_of_runs)
-        for name, times in times_of_runs.items():
-            rows = rows_of_runs[name]
-            held = {sensor: values[rows] for sensor, values in readings.items() if np.isfinite(values[rows]).any()}
-            if not held:
-                raise InputError(f"run '{name}' has no reading at all", file=file)
-            times.flags.writeable = False
-            runs.append(MeasuredRun(name, times, pd.DataFrame(held), source, lines.comments, columns.channels, notes))
-        return MeasuredTable(file, tuple(runs), lines.heading)
+        ignore, several = tuple(ignore), len(self.sheets) > 1
+        runs: dict[str, MeasuredRun] = {}
+        sheet_of: dict[str, str] = {}
+        for sheet in self.sheets:
+            with _naming(sheet.name if several else None):
+                read = sheet.read(time_offset=time_offset, rename=rename, ignore=ignore)
+            for run in read:
+                if run.name in runs:
+                    both = f"'{sheet_of[run.name]}' and '{sheet.name}'"
+                    raise InputError(f"run '{run.name}' stands in two sheets, {both}", file=self.file)
+                runs[run.name], sheet_of[run.name] = run, sheet.name
+        headings = dict.fromkeys(text for sheet in self.sheets for text in sheet.lines.heading)
+        return MeasuredTable(self.file, tuple(runs.values()), tuple(headings))
 
 
 def table_lines(path: str | Path, rename: Mapping[str, str] | None = None) -> TableLines:
-    """The rows of a file; ``rename``: column -> name, for a time column that is called otherwise."""
+    """The rows of a file; ``rename``: column -> name, for a time column that is called otherwise.
+
+    Sheets without a time column are left out, which is noted, unless no sheet has one.
+    """
     file = as_path(path, "path")
-    return TableLines(split(file, rename), file, file.stem)
+    of_sheets = texts(file)
+    alone = len(of_sheets) == 1
+    lines, others = dict[str, Lines](), list[str]()
+    for name, text in of_sheets.items():
+        try:
+            with _naming(None if alone else name):
+                lines[name] = split(text, file, rename)
+        except NoTableError:
+            if alone:
+                raise
+            others.append(name)
+    if not lines:
+        raise InputError(f"none of its sheets ({', '.join(others)}) has a time column like 'time [s]'", file=file)
+    if others:
+        note = f"sheets without a time column are left out: {', '.join(others)}"
+        lines = {name: replace(of_sheet, notes=(*of_sheet.notes, note)) for name, of_sheet in lines.items()}
+    names = dict.fromkeys(lines, file.stem) if len(lines) == 1 else {name: name for name in lines}
+    return TableLines(tuple(Sheet(lines[name], file, names[name]) for name in lines), file, file.stem)
 
 
-def _rows_of_runs(column: int | None, lines: Lines, file: Path, only: str) -> dict[str, NDArray[np.intp]]:
-    """Run -> its rows; a table without a run column is one run, ``only``."""
-    if column is None:
-        return {only: np.arange(len(lines.rows))}
-    rows_of: dict[str, list[int]] = {}
-    for place, (row, line) in enumerate(zip(lines.rows, lines.numbers, strict=True)):
-        if not row[column]:
-            raise InputError(f"line {line}: the run column is empty", file=file)
-        rows_of.setdefault(row[column], []).append(place)
-    return {name: np.array(places) for name, places in rows_of.items()}
+@contextmanager
+def _naming(sheet: str | None) -> Iterator[None]:
+    """Errors say the sheet, if there are several."""
+    try:
+        yield
+    except NoTableError:
+        raise
+    except InputError as error:
+        if sheet is None:
+            raise
+        raise InputError(f"sheet '{sheet}', {error.message}", field=error.field, file=error.file) from None

@@ -22,7 +22,7 @@ KEYS = {
     "drum_diameter": "Diameter of the drum that the tyre rolls on; a flat road without it.",
     "sensors": "Thermocouples by name.",
     "run": "Name of a measured run.",
-    "cases": "CSV file with one case per row.",
+    "cases": "CSV or Excel file with one case per row.",
     "elasticity": "Strain-energy law of the rubber.",
     "softening": "Decrease of the modulus with temperature.",
     "shift": "Shift of frequencies with temperature, by Williams, Landel and Ferry.",

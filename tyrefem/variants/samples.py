@@ -201,7 +201,7 @@ def changes_at(varied: Sequence[Varied], place: Sequence[float] | Array) -> dict
 
 
 def listed(path: Path) -> tuple[list[dict[str, Any]], list[str]]:
-    """The variants of a CSV file (see `tyrefem.measured.cases`), and their names.
+    """The variants of a file (see `tyrefem.measured.cases`), and their names.
 
     Raises
     ------
