@@ -58,7 +58,7 @@ def test_semicolons_and_decimal_commas(tmp_path: Path, delimiter: str) -> None:
         ("name,section\na,b\nA,d\n", "cases 'a' and 'A', lines 2 and 3, differ only in capital letters"),
         ('name,section\na,"b\n', "line 2: quotes do not match"),
         (b"name\x00", "is not a text file"),
-        (b"PK\x03\x04", "spreadsheet or archive"),
+        (b"PK\x03\x04", "workbook or archive"),
     ],
 )
 def test_mistakes_are_named(tmp_path: Path, text: str | bytes, words: str) -> None:

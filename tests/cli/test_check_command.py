@@ -93,7 +93,7 @@ BAD = {
     "newline.toml": (b'"a\\nb\\u001b[31m" = 1\n', "unknown key 'a b"),
     "empty.csv": (b"", "is empty"),
     "binary.csv": (b"\x7fELF\x00\x01", "is not a text file"),
-    "zip.csv": (b"PK\x03\x04rest", "spreadsheet or archive"),
+    "zip.csv": (b"PK\x03\x04rest", "workbook or archive that cannot be read"),
     "words.csv": (b"hello\nworld\n", "no time column"),
     "short.csv": (b"time [s],crown [degC]\n0,25\n1\n", "line 3: 1 cells, but the heading has 2"),
     "cases.csv": (b"name,drive.load [lbf]\na,1\na,2\n", "case 'a' stands in lines 2 and 3"),
