@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import meshio
@@ -11,7 +12,7 @@ import pytest
 from numpy.typing import NDArray
 
 from tyrefem.errors import InputError
-from tyrefem.geometry import Section, load
+from tyrefem.geometry import Division, Section, load
 from tyrefem.geometry.meshing import TyreMesh, build, read, read_for, write
 
 pytestmark = pytest.mark.fast
@@ -330,3 +331,29 @@ def test_further_sets_of_a_program_are_left_out(tmp_path: Path) -> None:
     assert set(mesh.boundaries) == {"SKIN"}
     with pytest.raises(InputError, match="2 of 2 elements belong to more than one region"):
         read(path, regions=["LEFT"])
+
+
+def renamed(section: Section, old: str, new: str) -> Section:
+    """The section with another name of a region or boundary."""
+
+    def named(division: Division) -> Division:
+        return Division(tuple(new if name == old else name for name in division.names), division.ends)
+
+    layers = tuple(replace(layer, regions=named(layer.regions)) for layer in section.layers)
+    return replace(section, layers=layers, outer=named(section.outer))
+
+
+def test_a_region_and_a_boundary_of_one_name_are_kept_or_refused(section: Section, tmp_path: Path) -> None:
+    """gmsh's names are a table with one entry by name: the region would be lost."""
+    tyre = build(renamed(section, "outside_air", "sidewall"), size=8e-3)
+    with pytest.raises(InputError, match=r"'sidewall' names a region and a boundary"):
+        write(tyre, tmp_path / "tyre.msh")
+    assert not (tmp_path / "tyre.msh").exists()
+    back = read_for(tyre.section, write(tyre, tmp_path / "tyre.vtu"))
+    assert np.array_equal(back.mesh.subdomains["sidewall"], tyre.mesh.subdomains["sidewall"])
+
+
+@pytest.mark.parametrize(("suffix", "name"), [(".msh", 'tread "A"'), (".vtu", "belt & cap"), (".vtu", "a<b")])
+def test_names_that_cannot_be_read_again_are_refused(section: Section, tmp_path: Path, suffix: str, name: str) -> None:
+    with pytest.raises(InputError, match=f"a '{suffix}' file cannot keep the name '{name}'"):
+        write(build(renamed(section, "tread", name), size=8e-3), tmp_path / f"tyre{suffix}")

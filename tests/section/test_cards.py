@@ -227,3 +227,22 @@ def test_every_group_of_numbers_has_a_source(name: str) -> None:
     groups = [data["line"], data["parameters"], data["rating"], *data["layers"]]
     assert all(len(group["source"]) > 20 for group in groups)
     assert "estimate" in data["rating"]["source"]
+
+
+def test_no_region_has_the_name_of_what_grooves_cut_out(ring_card: dict[str, Any]) -> None:
+    """Such a part would be left out of meshes, areas and masses without a word."""
+    ring_card["layers"][0]["regions"] = [{"name": "groove", "to": "bead_start"}, {"name": "bead"}]
+    with pytest.raises(InputError, match=r"'groove' is the name of what \[grooves\] cuts out") as error:
+        build(SectionCard.check(ring_card))
+    assert error.value.field == "layers.0.regions"
+
+
+def test_a_worn_sidewall_leaves_the_tread_beside_its_grooves(ring_card: dict[str, Any]) -> None:
+    """A row of the tread's table lies in a groove: it wears with the tread alone."""
+    rubber = ring_card["layers"][1]
+    rubber["s"], rubber["thickness"] = {"unit": "mm", "values": [0, 20, 40, 120, 200]}, ["6 mm"] * 5
+    ring_card["grooves"] = {"at": ["20 mm"], "width": "8 mm", "source": "made up for a test"}
+    section = build(SectionCard.check(ring_card))
+    s = np.linspace(0.0, 0.04, 41)
+    assert section.worn("sidewall", 0.2).interfaces(s) == pytest.approx(section.interfaces(s), abs=1e-12)
+    assert section.worn("tread", 0.2).interfaces(s)[-1] == pytest.approx(section.interfaces(s)[-1] - 1.2e-3, abs=1e-12)

@@ -66,6 +66,13 @@ def test_run_flat_tyres_are_refused_with_the_usual_tyre_of_the_size(mark: str) -
         parse_size(f"205/55R16 91W {mark} XL")
 
 
+@pytest.mark.parametrize(("size", "usual"), [("205/55RF16 91W", "205/55R16 91W"), ("225/45 ZRF 17", "225/45 ZR 17")])
+def test_run_flat_tyres_are_refused_by_the_f_of_their_structure(size: str, usual: str) -> None:
+    """UN R30: RF and ZRF are the structure of run-flat tyres."""
+    with pytest.raises(InputError, match=f"run-flat tyre, .* of this size is {usual}$"):
+        parse_size(size)
+
+
 @pytest.mark.parametrize(
     ("text", "kind", "outside", "width", "rim", "plies"),
     [
@@ -173,7 +180,12 @@ def test_names_of_cards_are_no_sizes() -> None:
 
 
 @pytest.mark.parametrize(
-    ("index", "mass"), [(75, 387), (82, 475), (91, 615), (98, 750), (120, 1400), (152, 3550), (160, 4500)]
+    ("index", "mass"),
+    [
+        *((75, 387), (82, 475), (91, 615), (98, 750), (120, 1400), (152, 3550), (160, 4500)),
+        # Ten times the halves that the lower indices leave out: 257.5, 272.5, 307.5, 387.5, 487.5 kg.
+        *((141, 2575), (143, 2725), (147, 3075), (155, 3875), (163, 4875)),
+    ],
 )
 def test_loads_of_load_indices(index: int, mass: float) -> None:
     """ISO 4000-1: from memory, and within 2 % of 45 x 10^(index/80) kg."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -12,9 +13,13 @@ import pytest
 import tyrefem as tf
 from tyrefem.api import Study
 from tyrefem.cli import main
-from tyrefem.geometry import TwoArcs
+from tyrefem.geometry import SectionCard, TwoArcs, build
+from tyrefem.inputs.other_size.arcs import scale_gauges
 from tyrefem.inputs.other_size.places import along, same_depth
+from tyrefem.inputs.other_size.points import _move_along
+from tyrefem.library import load as load_card
 from tyrefem.sizes import draw_size
+from tyrefem.sizes.text import table_lines
 
 pytestmark = pytest.mark.fast
 
@@ -268,3 +273,40 @@ def test_a_section_whose_title_names_no_size_is_refused(here: Path, capsys: pyte
     file.write_text(file.read_text(encoding="utf-8").replace("205/55R16 passenger", "A passenger"), encoding="utf-8")
     assert main(["new", "tyre", "225/45R17", "--from", "studies/hand"]) == 2
     assert "names no size to scale from" in capsys.readouterr().err
+
+
+def test_texts_and_names_of_any_kind_are_read_back() -> None:
+    """Sources of several lines, names that are no bare keys, and a title behind a table that was written inline."""
+    data = {
+        "section": {"base": "mine", "parameters": {"thickness_scale": {"Flanke-ä": 1.1, 'a "b"': 0.9}}},
+        "title": "two\nlines, a\ttab, C:\\tyre and \x7f",
+        "materials": {"Laufstreifen, außen": "nasa-tread"},
+        "effects": [{"name": "hot-road", "from": "a 'note'\n"}],
+    }
+    assert tomllib.loads("\n".join(table_lines(data))) == data
+
+
+def test_factors_on_thickness_count_once_and_grooves_leave_the_gauge_of_the_tread() -> None:
+    changes = {"base": "nasa-22x5.5-8pr", "parameters": {"thickness_scale": {"tread": "1.2"}}}
+    data, _, _ = load_card("section", changes)
+    # A groove over the table's row at 0.895 in.
+    data["grooves"] = {"at": ["0.895 in"], "width": "8 mm", "source": "made up for a test"}
+    first, other = draw_size("22x5.5 8PR"), draw_size("24x7.7 16PR")
+    old = build(SectionCard.check(data)).layers[-1].thickness
+    for after in (first, other):
+        new = {**data, "layers": [dict(layer) for layer in data["layers"]]}
+        scale_gauges(new, data, first, after)
+        factor = after.rules["tread_gauge"].value / first.rules["tread_gauge"].value
+        gauge = build(SectionCard.check(new)).layers[-1].thickness
+        assert gauge.values[:4] == pytest.approx([factor * value for value in old.values[:4]], abs=1e-6)
+
+
+def test_a_table_that_stretches_keeps_its_shares_of_the_meridian() -> None:
+    """Its stations count as stretched to the line, not as written: here from 0 to 1 m on a line of 0.2 m."""
+    data, _, _ = load_card("section", "nasa-22x5.5-8pr")
+    rows = {"s": {"unit": "m", "values": [0.0, 0.1, 0.5, 1.0]}, "thickness": ["5 mm"] * 4}
+    data["layers"] = [{**data["layers"][0], **rows}]
+    data["parameters"] = {**data["parameters"], "thickness_scale": {}}
+    new = {**data, "parameters": {}, "layers": [dict(data["layers"][0])]}
+    _move_along(new, SectionCard.check(data), np.array([0.0, 0.2]), np.array([0.0, 0.24]))
+    assert new["layers"][0]["s"] == {"unit": "mm", "values": [0.0, 24.0, 120.0, 240.0]}

@@ -50,6 +50,22 @@ def test_road_tyres_have_the_standards_size(size: str, diameter: float, width: f
     assert draw_size(size).rules["rim_width"].value == pytest.approx(rim * INCH)
 
 
+@pytest.mark.parametrize("size", ["33x8.50R15LT", "34x8.50R16LT"])
+def test_a_flotation_size_may_be_higher_than_wide(size: str) -> None:
+    section = tf.section_from_size(size)
+    assert section.outer_diameter == pytest.approx((float(size[:2]) - 0.5) * INCH, abs=1e-5)
+    assert section.warnings == ()
+
+
+@pytest.mark.parametrize(("size", "exponent"), [("205/60R15", 0.8), ("22x5.5 8PR", 1.0)])
+def test_without_a_load_a_lower_pressure_has_the_load_that_it_carries(size: str, exponent: float) -> None:
+    rated = draw_size(size).rules
+    half = draw_size(size, {"pressure": f"{rated['rated_pressure'].value / 2} Pa"}).rules["load"]
+    assert half.value == pytest.approx(rated["rated_load"].value / 2**exponent, rel=1e-6)
+    assert half.source == "what the tyre carries at this pressure"
+    assert draw_size(size, {"pressure": rated["rated_pressure"].text}).rules["load"].source == "as rated"
+
+
 @pytest.mark.parametrize(("size", "load"), [("205/55R16", 670), ("225/45R17", 670), ("195/65R15", 690)])
 def test_an_extra_load_is_carried_at_its_higher_reference_pressure(size: str, load: float) -> None:
     """290 kPa in place of 250 kPa; load indices 94, 94 and 95 of these sizes' XL tyres, kg (ETRTO, from memory)."""

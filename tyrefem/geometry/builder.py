@@ -255,6 +255,11 @@ def _layers(card: SectionCard, line: Line) -> tuple[Layer, ...]:
     for index, layer in enumerate(card.layers):
         field = f"layers.{index}"
         regions = _division(layer.regions, marks, line.length, f"{field}.regions")
+        if GROOVE in regions.names:
+            raise InputError(
+                f"'{GROOVE}' is the name of what [grooves] cuts out of the outermost layer; take another one",
+                field=f"{field}.regions",
+            )
         profile = _profile(layer, regions, card.parameters.thickness_scale, line.length, field)
         layers.append(Layer(layer.name, profile, regions))
     return tuple(layers)

@@ -42,7 +42,7 @@ class Section(Brief, PickledFields):
         the ``"inner"`` or ``"outer"`` face.
     outer : boundaries along the outer face; the end face at the bead belongs to the last one.
     rating : rated load and pressure, bead wire; None where unknown.
-    nominal_width : w of the report's shear formula and of the shoulder [m].
+    nominal_width : w of the designation, for the shoulder of two arcs [m]; formulas take the rating's width.
     inner_volume : measured air volume of the whole tyre [m3]; None: from the geometry.
     flange_radius : of the rim's flange [m]; None where unknown. flange_centre : (r, z) of its rounding's centre [m].
     groove_boundary : boundary of the walls and bottoms of grooves, the parts of the outermost layer named `GROOVE`.
@@ -376,8 +376,12 @@ class Section(Brief, PickledFields):
         if region not in outer.regions.names:
             raise InputError(f"region '{region}' is not on the outside of section '{self.name}' and cannot wear")
         profile = outer.thickness
-        names = outer.regions.at(profile.s)
-        left = np.where((names == region) | (names == GROOVE), 1.0 - fraction, 1.0)
+        uncut = list(outer.regions.names)
+        for place in reversed(range(len(uncut) - 1)):
+            # A groove lies within one region, which goes on behind it.
+            uncut[place] = uncut[place + 1] if uncut[place] == GROOVE else uncut[place]
+        names = Division(tuple(uncut), outer.regions.ends).at(profile.s)
+        left = np.where(names == region, 1.0 - fraction, 1.0)
         thinner = replace(profile, values=tuple((np.asarray(profile.values) * left).tolist()))
         layers = (*inner, replace(outer, thickness=thinner))
         return replace(self, layers=layers, as_built=self.built_layers)

@@ -7,7 +7,7 @@ import math
 from tyrefem.errors import InputError
 from tyrefem.sizes.data_book import SOURCE, DataBookRow, row_of, rows_of
 from tyrefem.sizes.designation import INCH, TyreSize
-from tyrefem.sizes.load_index import AIRCRAFT_EXPONENT, check_carries
+from tyrefem.sizes.load_index import AIRCRAFT_EXPONENT, capacity, check_carries
 from tyrefem.sizes.rim import Rim
 from tyrefem.sizes.rules import UNITS, Rules
 
@@ -124,9 +124,9 @@ def _rated(size: TyreSize, rule: Rules, row: DataBookRow | None, outer: float) -
     )
     if "load" in rule.given or "pressure" in rule.given:
         at = rule("pressure", pressure, "psi", "as rated", 1e4, 4e6)
-        check_carries(
-            load, pressure, rule("load", load if at >= pressure else 0.0, "lbf", "as rated"), at, AIRCRAFT_EXPONENT
-        )
+        words = "as rated" if at >= pressure else "what the tyre carries at this pressure"
+        wanted = rule("load", capacity(load, pressure, at, AIRCRAFT_EXPONENT), "lbf", words)
+        check_carries(load, pressure, wanted, at, AIRCRAFT_EXPONENT)
     return pressure
 
 

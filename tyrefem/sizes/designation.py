@@ -19,12 +19,13 @@ _MARKS = re.compile(
     re.IGNORECASE,
 )
 _EXTRA_LOAD = re.compile(r"(?:\b|(?<=\d[A-Z]))(?:XL|extra load|reinforced)(?!\w)", re.IGNORECASE)
-_RUN_FLAT = re.compile(r"\s*,?\s*\b(?:run[\s-]?flat|RFT|ROF|SSR|ZP)(?!\w)", re.IGNORECASE)
+#: Also the F of the structure, as 225/45RF17 (UN R30).
+_RUN_FLAT = re.compile(r"\s*,?\s*\b(?:run[\s-]?flat|RFT|ROF|SSR|ZP)(?!\w)|(?<=R)F(?=\s?\d)", re.IGNORECASE)
 _PLIES = r"(?:\s*,?\s*(?P<plies>\d{1,2})\s*-?\s*(?:PR|ply(?:\s*rating)?))?"
 #: Load range behind the rim, as "/E" or " E"; without LT before the size a C is that of commercial tyres.
 _RANGE = r"(?:(?P<slash>\s?/\s?|\s?)(?P<letter>[B-H])(?![A-Z0-9]))?"
 _METRIC = re.compile(
-    rf"(?P<service>P|LT)?\s?(?P<width>\d{{3}})\s?/\s?(?P<series>\d{{2,3}})\s?Z?(?P<build>R|-|D|B)F?\s?"
+    rf"(?P<service>P|LT)?\s?(?P<width>\d{{3}})\s?/\s?(?P<series>\d{{2,3}})\s?Z?(?P<build>R|-|D|B)\s?"
     rf"(?P<rim>\d{{2}}(?:\.5)?){_RANGE}{_SERVICE}{_PLIES}",
     re.IGNORECASE,
 )

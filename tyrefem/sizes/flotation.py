@@ -70,5 +70,7 @@ def pressure_of(
         for letter, pressure in pressures.items()
         if load_by_volume(width, height, rim_diameter, pressure * PSI) > LEAST_SHARE * load
     )
-    letter = next(carries, max(pressures))
-    return pressures[letter] * PSI, f"estimate: load range {letter}, the lowest that carries the load index ({words})"
+    lowest = next(carries, None)
+    letter = lowest or max(pressures)
+    reason = "the lowest that carries" if lowest else "the highest, which by volume carries less than"
+    return pressures[letter] * PSI, f"estimate: load range {letter}, {reason} the load index ({words})"

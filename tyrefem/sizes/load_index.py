@@ -5,7 +5,8 @@ from __future__ import annotations
 from tyrefem.errors import InputError
 
 GRAVITY = 9.80665
-#: kg of the load indices 60 to 139; ten times as much 80 indices higher (ISO 4000-1, ETRTO; from memory).
+#: kg of the load indices 60 to 139 (ISO 4000-1, ETRTO; from memory). 80 indices higher it is ten times as much, of the
+#: halves too that are left out here (257 for 257.5).
 _MASSES = (
     *(250, 257, 265, 272, 280, 290, 300, 307, 315, 325, 335, 345, 355, 365, 375, 387, 400, 412, 425, 437),
     *(450, 462, 475, 487, 500, 515, 530, 545, 560, 580, 600, 615, 630, 650, 670, 690, 710, 730, 750, 775),
@@ -31,6 +32,8 @@ def load_of_index(index: int) -> float:
     if not 60 <= index < 180:
         raise InputError(f"load index {index} is outside 60 to 179", field="size")
     mass = _MASSES[index - 60] if index < 140 else 10 * _MASSES[index - 140]
+    if index >= 140 and mass % 100 in (20, 70):
+        mass += 5
     return round(mass * GRAVITY, 1)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from tyrefem.errors import InputError
 from tyrefem.sizes.designation import INCH, TyreSize
 from tyrefem.sizes.flotation import LOAD_SOURCE, load_by_volume, pressure_of
-from tyrefem.sizes.load_index import GRAVITY, ROAD_EXPONENT, check_carries
+from tyrefem.sizes.load_index import GRAVITY, ROAD_EXPONENT, capacity, check_carries
 from tyrefem.sizes.rim import Rim
 from tyrefem.sizes.rules import Rules
 
@@ -119,5 +119,7 @@ def _of_use(rule: Rules, load: float, words: str, pressure: float, source: str) 
     pressure = rule("rated_pressure", pressure, "kPa", source, 5e4, 2e6)
     if "load" in rule.given or "pressure" in rule.given:
         at = rule("pressure", pressure, "kPa", "as rated", 1e4, 3e6)
-        check_carries(load, pressure, rule("load", load if at >= pressure else 0.0, "N", "as rated"), at, ROAD_EXPONENT)
+        words = "as rated" if at >= pressure else "what the tyre carries at this pressure"
+        wanted = rule("load", capacity(load, pressure, at, ROAD_EXPONENT), "N", words)
+        check_carries(load, pressure, wanted, at, ROAD_EXPONENT)
     return pressure

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import re
 import textwrap
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
@@ -79,7 +81,9 @@ def _materials(drawn: Drawn) -> Iterator[str]:
 
 def table_lines(data: Mapping[str, Any]) -> Iterator[str]:
     """Plain data as the lines of a TOML file: a table's values each on a line, what is below them inline."""
-    for key, value in data.items():
+    tables = [isinstance(value, Mapping | list) for value in data.values()]
+    # Behind a table's heading a plain value would be one of that table.
+    for _, (key, value) in sorted(zip(tables, data.items(), strict=True), key=lambda pair: pair[0]):
         if isinstance(value, Mapping):
             yield ""
             yield f"[{key}]"
@@ -120,7 +124,8 @@ def _pairs(table: Mapping[str, Any]) -> Iterator[str]:
 
 def _value(value: Any) -> str:
     if isinstance(value, str):
-        return '"' + value.replace("\\", "\\\\").replace('"', '\\"') + '"'
+        # The escapes of JSON are those of TOML, which has one more.
+        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, Mapping):
@@ -131,4 +136,4 @@ def _value(value: Any) -> str:
 
 
 def _key(key: str) -> str:
-    return key if key.replace("-", "").replace("_", "").isalnum() else f'"{key}"'
+    return key if re.fullmatch(r"[A-Za-z0-9_-]+", key) else _value(key)

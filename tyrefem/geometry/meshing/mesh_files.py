@@ -35,6 +35,9 @@ WRITTEN: dict[str, dict[str, Any]] = {
     ".vtk": {},
 }
 
+#: Signs that meshio writes into a name without the format's escapes.
+UNREADABLE = {".msh": '"', ".vtu": '"&<'}
+
 
 def read(
     path: str | Path,
@@ -166,7 +169,7 @@ def write(mesh: Any, path: str | Path) -> Path:
 
     Raises
     ------
-    InputError : a format without names, or the file cannot be written.
+    InputError : a format without names, a name that it cannot keep, or the file cannot be written.
     """
     import meshio
 
@@ -179,6 +182,7 @@ def write(mesh: Any, path: str | Path) -> Path:
     regions, boundaries = mesh.subdomains or {}, mesh.boundaries or {}
     if sum(map(len, regions.values())) > len(np.unique(np.concatenate([[], *regions.values()]))):
         raise InputError("its regions overlap; write the mesh without zones", file=path)
+    _check_names(regions, boundaries, path)
     facets = np.unique(np.concatenate([np.zeros(0, dtype=np.int64), *boundaries.values()]))
     cells = [(cell, mesh.t.T), ("line", mesh.facets[:, facets].T)]
     members = {("region", name): (numbers, 0) for name, numbers in regions.items()}
@@ -204,6 +208,19 @@ def write(mesh: Any, path: str | Path) -> Path:
             raise InputError(f"cannot be written: {error}", file=path) from error
         _name_writer(temporary)
     return path
+
+
+def _check_names(regions: Iterable[str], boundaries: Iterable[str], path: Path) -> None:
+    """Raise `InputError` for names that meshio writes, but cannot read again."""
+    for name in [*regions, *boundaries]:
+        if bad := [sign for sign in UNREADABLE.get(path.suffix, "") if sign in name]:
+            raise InputError(f"a '{path.suffix}' file cannot keep the name '{name}': it has a {bad[0]}", file=path)
+    both = sorted(set(regions) & set(boundaries))
+    if both and path.suffix == ".msh":
+        raise InputError(
+            f"'{both[0]}' names a region and a boundary, of which a '.msh' file keeps one; '.vtu' and '.vtk' keep both",
+            file=path,
+        )
 
 
 def _name_writer(path: Path) -> None:

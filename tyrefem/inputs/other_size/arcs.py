@@ -110,14 +110,15 @@ def scale_gauges(new: dict[str, Any], data: Mapping[str, Any], before: Drawn, af
     """Thickness of the layers: carcass and bead by the number of plies, tread by the rules' tread; others stay."""
     plies, tread = (ratio(before.rules, after.rules, name) for name in ("plies", "tread_gauge"))
     factors = {"carcass": plies, "bead": plies, "tread": tread}
-    section = build(SectionCard.check(data))
-    for layer, built in zip(new["layers"], section.layers, strict=True):
+    # The file keeps its factors on thickness, so its own rows are scaled; below a groove they are the tread's.
+    card = SectionCard.check({key: value for key, value in data.items() if key != "grooves"})
+    for layer, rows, built in zip(new["layers"], card.layers, build(card).layers, strict=True):
         regions = built.regions.at(np.array(built.thickness.s))
         layer["thickness"] = {
             "unit": "mm",
             "values": [
                 round(1e3 * value * factors.get(str(region), 1.0), 3)
-                for value, region in zip(built.thickness.values, regions, strict=True)
+                for value, region in zip(rows.thickness, regions, strict=True)
             ],
         }
         layer["source"] = f"scaled to {after.size.text}; before: {layer['source']}"

@@ -104,7 +104,8 @@ def _move_along(new: dict[str, Any], card: SectionCard, before: Array, after: Ar
             new["parameters"][name] = _mm(from_bead(value))
     parts = [(new["boundaries"], card.boundaries)]
     for layer, built in zip(new["layers"], card.layers, strict=True):
-        layer["s"] = _table(1e3 * moved(np.array(built.s)))
+        s = np.array(built.s)
+        layer["s"] = _table(1e3 * moved(s * (ends[0] / s[-1]) if built.stretch and s[-1] > 0 else s))
         parts.append((layer["regions"], built.regions))
     for written, olds in parts:
         for part, old in zip(written, olds, strict=True):

@@ -64,11 +64,11 @@ def _rim_and_rating(size: TyreSize, rule: Rules, pressure: float, density: float
     series, height = size.series or 0.0, size.section_height or 0.0
     diameter = check_rim_diameter(size)
     inches = size.outside_diameter is not None
-    share = next(share for top, share in RIM_SHARES if series <= top)
-    words = f"{STANDARD}: measuring rim, {share:g} nominal widths to the half inch"
     if inches:
         rim_width = measuring_rim(size, rule, flotation.RIM_SHARE, INCH / 2, flotation.RIM_SOURCE, flotation.RIM_REACH)
     else:
+        share = next(share for top, share in RIM_SHARES if series <= top)
+        words = f"{STANDARD}: measuring rim, {share:g} nominal widths to the half inch"
         rim_width = measuring_rim(size, rule, share, INCH / 2, words)
     rim = road_rim(rule, diameter, rim_width, 17.3e-3, 9.5e-3, 0.0872664626, f"J contour of a 5 deg seat, {STANDARD}")
     words = flotation.DIAMETER_SOURCE if inches else f"{STANDARD}: rim diameter + 2 section heights"
