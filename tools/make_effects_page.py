@@ -193,11 +193,7 @@ def draw(effect: type[Effect], base: tf.Result) -> None:
 
     study = _study(effect)
     choice = effect.signature.choice or effect.variants(study)[0]
-    values = {
-        one.name: one.prior.text(one.prior.null + one.prior.scale, 12)
-        for one in effect.parameters()
-        if one.prior.amplitude
-    }
+    values = {one.name: one.prior.text(one.prior.usual, 12) for one in effect.parameters() if one.prior.amplitude}
     readings = study.replace({"effects": [{"name": effect.name, **choice, **values}]}).run().readings
     change, t = readings - base.readings, readings["time_s"].to_numpy() / 60
     drawn = figure(6.4, 2.5)

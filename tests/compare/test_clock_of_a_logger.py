@@ -14,7 +14,11 @@ TIMES = np.arange(0.0, 601.0, 10.0)
 
 @pytest.mark.parametrize(
     ("begin", "length", "offset"),
-    [(3600.0, 61, "add -3600 s to the 'time_offset'"), (-900.0, 21, "add 900 s to the 'time_offset'")],
+    [
+        (3600.0, 61, "add -3600 s to the 'time_offset'"),
+        (-900.0, 21, "add 900 s to the 'time_offset'"),
+        (12345678.5, 61, "add -12345678.5 s to the 'time_offset'"),
+    ],
 )
 def test_the_offset_is_said_where_the_run_would_fit(begin: float, length: int, offset: str) -> None:
     run = measured_from(Study(), begin + TIMES[:length])

@@ -165,3 +165,18 @@ def test_every_effect_compared_is_reported_as_progress(case: Case, known: Sensit
     result = isolability(case.study, known=known, progress=lambda *each: done.append(each))
     n = len(result.candidates)
     assert done == [("effects", number, n) for number in range(1, n + 1)]
+
+
+@pytest.mark.parametrize(("low", "high"), [(0.0, 100.0), (-100.0, 0.0), (0.0, 1.0)])
+def test_an_effect_is_seen_on_the_side_and_to_the_bound_that_it_has(low: float, high: float) -> None:
+    """A draft of missing cooling has no positive amplitudes: it counted as never seen."""
+    made = effect("made-up", sd=2.0)
+    known = made.unknowns[0]
+    candidate = replace(made, unknowns=(replace(known, low=low, high=high),))
+    times = np.arange(40.0)
+    sampling = SensorSampling("crown", times, 1.0, 0.0, 1.0)
+    drive = DriveSampling("run-1", {}, False, (sampling,))
+    J = np.column_stack([np.ones(40), 0.3 * times])
+    layout = Sensitivities((drive,), (STATED, *candidate.unknowns), 1, (np.zeros(40),), (np.zeros(40),), (J,))
+    runs, _ = fewest_runs(layout, (candidate,), SetPrior((candidate,), 0.5), np.array([1.0]))
+    assert runs == (("run-1",),)

@@ -174,3 +174,15 @@ def test_readings_whose_noise_spreads_over_several_steps_have_no_shared_rounding
     (noise,) = noise_of([("crown", times, values)], [0.5])
     assert noise.resolution == 1.0
     assert noise.rounding == 0.0
+
+
+def test_a_few_readings_tell_no_step_of_a_logger() -> None:
+    """Two readings are multiples of their difference: 35 K were taken for the step, and 17.5 K for the noise."""
+    rng, times = np.random.default_rng(7), 10.0 * np.arange(300)
+    logged = ("crown", times, heated(times, 200.0) + 0.5 * rng.normal(size=300))
+    by_hand = [
+        ("bead", np.array([0.0, 1800.0]), np.array([25.0, 60.0])),
+        ("sidewall", np.array([0.0, 900.0, 1800.0]), np.array([25.0, 37.0, 49.0])),
+    ]
+    _, *few = noise_of([logged, *by_hand], [0.5] * 3)
+    assert [(noise.used, noise.rounding) for noise in few] == [(0.5, 0.0)] * 2

@@ -7,8 +7,10 @@ from pathlib import Path
 import numpy as np
 from hidden import study
 
+import tyrefem as tf
 from tyrefem.diagnose.forward.forward_model import ForwardModel
 from tyrefem.diagnose.forward.sampling import DriveSampling, SensorSampling
+from tyrefem.diagnose.forward.strain_law_study import by_law
 from tyrefem.diagnose.settings import DiagnosisSettings
 
 TIMES = np.arange(0.0, 160.0, 8.0)
@@ -26,3 +28,14 @@ def test_another_strain_law_changes_the_readings_by_its_runs_difference(tmp_path
     assert of_tread[-1] < -0.5
     np.testing.assert_allclose(model.change_by_law(0, "arcs"), 0.0, atol=1e-9)
     assert np.isnan(model.change_by_law(0, "given")).all()
+
+
+def test_a_level_on_the_heat_is_for_every_run_also_beside_an_entry_at_null_or_of_one_run() -> None:
+    shape = {"name": "heat-shape", "half_waves": 0}
+    of_run = {**shape, "log_factor": 0.2, "runs": ["A"]}
+    for entries in ([shape], [of_run], [of_run, shape]):
+        stated = tf.study("hidden-effect").replace({"effects": entries})
+        factors = [
+            float(each["log_factor"]) for each in by_law(stated, "barrel", 0.1).data["effects"] if not each.get("runs")
+        ]
+        assert factors == [0.1]

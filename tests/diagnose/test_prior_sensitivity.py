@@ -27,6 +27,7 @@ from tyrefem.diagnose.verdicts.prior_sensitivity import (
     FACTORS,
     PROBABILITY,
     PriorChange,
+    _beside,
     evidence_change,
     leading_effects,
     prior_sensitivity,
@@ -206,3 +207,13 @@ def test_record_and_page_list_the_priors(case: Any) -> None:
         f"each three times as large and a third: {len(deciding)} of {len(rows)} change the verdict or its names."
         in page
     )
+
+
+def test_an_effect_whose_name_has_spaces_counts_beside_other_models_too() -> None:
+    """Three times the odds of an even chance: 3/4, for every variant, and for no effect whose name begins alike."""
+    named = {"hot wind (left)": 0.25, "hot wind in A": 0.25, "hot wind tunnel": 0.5}
+    model = UnderDiscrepancy("none", 0.0, "the model as it is", 1.0, named, (), {}, {})
+    robust = _beside(Robustness((model,)), "hot wind", lambda _: math.log(3.0))
+    assert robust is not None
+    expected = {"hot wind (left)": 0.375, "hot wind in A": 0.375, "hot wind tunnel": 0.5}
+    assert robust.models[0].named == pytest.approx(expected)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy.linalg import solve_banded
 
 from tyrefem.diagnose.heat.acting import ActingHeat, ActingSource, about_point, best_point, repeated
-from tyrefem.diagnose.heat.courses import Course, CourseGrid, courses
+from tyrefem.diagnose.heat.courses import Course, CourseGrid, constant, courses
 from tyrefem.diagnose.heat.evidence import ProjectedData
 from tyrefem.diagnose.heat.sources import EstimatedSource, Place
 from tyrefem.diagnose.law.evidence import LawData, law_data
@@ -239,3 +239,14 @@ def test_amounts_hold_the_truth_where_a_film_is_far_from_what_was_stated(film: f
         after.append((acting.amount - amount) / acting.sd)
     assert np.mean(np.abs(before)) > 5
     assert np.mean(np.abs(after)) < 1.5
+
+
+def test_a_phase_named_as_a_course_does_not_limit_this_course() -> None:
+    phases = ((("constant", 0.0, 600.0), ("cooling", 600.0, 900.0)),)
+    grid = CourseGrid(("A",), (np.linspace(0.0, 900.0, 4),), phases, lambda run, t: 10.0)
+    place = Place(0.06, "outer surface", 1.0, False, np.eye(4))
+    data = ProjectedData(np.array([1.0, 1.0, 3.0, 3.0]), np.zeros((4, 0)), np.zeros(0))
+    course = constant(grid)
+    point = best_point(data, np.zeros(0), np.zeros(0), [(place, course)], grid)
+    (acting,) = point.sources[0]
+    assert (acting.begins, acting.ends) == (-np.inf, np.inf)

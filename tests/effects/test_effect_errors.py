@@ -267,3 +267,11 @@ def test_a_standing_wave_is_not_counted_beside_the_inertia_of_the_rolling_tyre()
     assert "mechanics.rolling" in str(wave.refusal(tf.study("nasa-22x5.5-8pr", mechanics)))
     with pytest.raises(InputError, match=r"inertia already: mechanics\.rolling"):
         tf.study("nasa-22x5.5-8pr", {**mechanics, "effects": [{"name": "standing-wave", "gain": 2.0}]})
+
+
+@pytest.mark.parametrize("name", ["missing-heat", "missing-flux"])
+def test_heat_that_ends_before_it_begins_is_refused(name: str) -> None:
+    place = {"station": "60 mm", "width": "10 mm"}
+    with pytest.raises(InputError, match="ends at 300 s, before it begins at 600 s"):
+        catalogue()[name].check({**place, "begins": "600 s", "ends": "300 s"})
+    assert catalogue()[name].check({**place, "begins": "300 s", "ends": "600 s"})

@@ -38,6 +38,10 @@ SAME = {
     "Time [hh:mm:ss];crown [°C]\n12:30:00;25,0\n12:31:10,5;26,5\n": [
         "times in 'Time [hh:mm:ss]' are h:mm:ss, counted from the first row of the run (12:30:00)"
     ],
+    "Time [hh:mm],crown [degC]\n12:30:00,25\n12:31:10.5,26.5\n": [
+        "times in 'Time [hh:mm]' are h:mm:ss, counted from the first row of the run (12:30:00)"
+    ],
+    "Timestamp,crown [degC]\n2024-05-01,25\n2024-05-01 00:01:10.5,26.5\n": [],
     "Elapsed time (mm:ss),crown [degC]\n00:00,25\n01:10.5,26.5\n": [
         "times in 'Elapsed time (mm:ss)' are mm:ss since the start"
     ],
@@ -108,6 +112,7 @@ TWO_MEANINGS = {
     "time,crown\ns,mV\n0,25\n": "unknown temperature unit 'mV'",
     "time [s],crown [degC]\ns,F\n0,25\n": "line 2: column 'crown [degC]' has another unit, 'F', in a row of units",
     "time,crown\n,x\n0,25\n": "'time' has no unit",
+    "time [s],crown\n": "'crown' has no unit",
     "time [s],crown [degC]\n0,25\n1,-300\n": "-300 degC is below absolute zero",
     "time [s],crown [degC]\n0,25\n1,1372\n": "1372 degC is above 900 degC",
     "Zeit [s],Temps [s],crown [degC]\n0,0,25\n": "two time columns, 1 and 2; ignore one of them",

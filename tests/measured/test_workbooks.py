@@ -99,6 +99,27 @@ def test_a_day_in_a_cell_of_hours_and_minutes_is_no_date(tmp_path: Path) -> None
     assert run.times.tolist() == [43200.0, 108000.0]
 
 
+def test_a_whole_day_is_a_time_and_midnight_a_timestamp(tmp_path: Path) -> None:
+    """Spreadsheets hold both as a date without a clock time."""
+    rows = [[place / 24, 20 + place] for place in (23, 24, 25)]
+    path = book(tmp_path / "day.xlsx", log=[["elapsed time", "crown [degC]"], *rows])
+    made = openpyxl.load_workbook(path)
+    for cell in ("A2", "A3", "A4"):
+        made["log"][cell].number_format = "h:mm:ss"
+    made.save(path)
+    (run,) = read_table(path)
+    assert run.times.tolist() == [82800.0, 86400.0, 90000.0]
+    rows = [[dt.datetime(2024, 5, 1), 20], [dt.datetime(2024, 5, 1, 0, 0, 5), 21]]
+    (run,) = read_table(book(tmp_path / "midnight.xlsx", log=[["timestamp", "crown [degC]"], *rows]))
+    assert run.times.tolist() == [0.0, 5.0]
+
+
+def test_hours_and_minutes_have_the_seconds_that_their_format_hides(tmp_path: Path) -> None:
+    rows = [["time [hh:mm]", "crown [degC]"], [dt.time(12, 30), 20], [dt.time(12, 31), 21]]
+    (run,) = read_table(book(tmp_path / "clock.xlsx", log=rows))
+    assert run.times.tolist() == [0.0, 60.0]
+
+
 def test_date_and_time_in_two_columns(tmp_path: Path) -> None:
     day = dt.date(2024, 5, 1)
     rows = [["Date", "Time", "crown [degC]"], [day, dt.time(12, 0), 20], [day, dt.time(12, 0, 30), 21]]
@@ -113,21 +134,40 @@ def test_errors_of_formulas_are_no_readings(tmp_path: Path) -> None:
 
 def test_an_open_document_is_read(tmp_path: Path) -> None:
     cells = [["time [s]", "crown [degC]"], [0, 20.5], [60, 21.25]]
-    rows = "".join(f"<table:table-row>{''.join(map(_ods_cell, row))}</table:table-row>" for row in cells)
+    (run,) = read_table(_open_document(tmp_path / "open.ods", [[_ods_cell(cell) for cell in row] for row in cells]))
+    assert run.times.tolist() == [0.0, 60.0]
+    assert run.temperatures["crown"].tolist() == [20.5, 21.25]
+
+
+def test_an_open_document_has_times_of_more_than_a_day(tmp_path: Path) -> None:
+    times = ("PT23H59M59S", "PT24H00M00S", "PT30H00M00.500000000S")
+    cells = [f'<table:table-cell office:value-type="time" office:time-value="{time}"/>' for time in times]
+    heading = [_ods_cell("elapsed time"), _ods_cell("crown [degC]")]
+    rows = [heading, *([cell, _ods_cell(20.5)] for cell in cells)]
+    (run,) = read_table(_open_document(tmp_path / "days.ods", rows))
+    assert run.times.tolist() == [86399.0, 86400.0, 108000.5]
+
+
+def test_a_number_that_is_not_finite_is_refused_with_its_place(tmp_path: Path) -> None:
+    rows = [[_ods_cell("time [s]"), _ods_cell("crown [degC]")], [_ods_cell(0), _ods_cell(float("inf"))]]
+    with pytest.raises(InputError, match=r"line 2, column 'crown \[degC\]': 'inf' is not finite"):
+        read_table(_open_document(tmp_path / "inf.ods", rows))
+
+
+def _open_document(path: Path, rows: list[list[str]]) -> Path:
+    """A workbook of one sheet with rows of cells as XML."""
+    text = "".join(f"<table:table-row>{''.join(row)}</table:table-row>" for row in rows)
     space = "urn:oasis:names:tc:opendocument:xmlns"
     content = (
         f'<office:document-content xmlns:office="{space}:office:1.0" xmlns:table="{space}:table:1.0" '
-        f'xmlns:text="{space}:text:1.0"><office:body><office:spreadsheet><table:table table:name="log">{rows}'
+        f'xmlns:text="{space}:text:1.0"><office:body><office:spreadsheet><table:table table:name="log">{text}'
         "</table:table></office:spreadsheet></office:body></office:document-content>"
     )
-    path = tmp_path / "open.ods"
     with zipfile.ZipFile(path, "w") as archive:
         archive.writestr("mimetype", "application/vnd.oasis.opendocument.spreadsheet")
         archive.writestr("content.xml", content)
         archive.writestr("META-INF/manifest.xml", "<manifest/>")
-    (run,) = read_table(path)
-    assert run.times.tolist() == [0.0, 60.0]
-    assert run.temperatures["crown"].tolist() == [20.5, 21.25]
+    return path
 
 
 def _ods_cell(value: str | float) -> str:
@@ -140,6 +180,7 @@ BAD: dict[str, tuple[dict[str, list[list[Any]]], str]] = {
     "no time in two": ({"a": [["x"]], "b": [["y"]]}, "none of its sheets (a, b) has a time column like 'time [s]'"),
     "cell": ({"a": [HEAD, [0, "warm", 77]]}, "line 2, column 'crown [degC]': 'warm'"),
     "cell of two": ({"a": [HEAD, *ROWS], "b": [HEAD, [0, "warm", 77]]}, "sheet 'b', line 2, column 'crown [degC]'"),
+    "cell beside another sheet": ({"a": [["x"]], "b": [HEAD, [0, "warm", 77]]}, "sheet 'b', line 2, column 'crown"),
     "no unit": ({"a": [HEAD, *ROWS], "b": [["time", "crown"], [0, 20]]}, "sheet 'b', "),
     "run twice": (
         {"a": [["run", *HEAD], ["x", *ROWS[0]]], "b": [["run", *HEAD], ["x", *ROWS[0]]]},
@@ -173,3 +214,30 @@ def test_cases_may_stand_in_a_sheet(tmp_path: Path) -> None:
     assert [case.changes for case in read_cases(path)] == [{"drive.speed": "20 mph"}, {"drive.speed": "35.5 mph"}]
     with pytest.raises(InputError, match=r"has several sheets \(a, b\): keep one of them"):
         read_cases(book(tmp_path / "two.xlsx", a=rows, b=rows))
+
+
+def test_a_cell_far_off_the_table_is_refused_before_all_cells_to_it_are_made(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The process would end without a message where they do not fit into memory."""
+    path = book(tmp_path / "far.xlsx", log=[HEAD, *ROWS])
+    made = openpyxl.load_workbook(path)
+    made["log"]["XFD1048576"].number_format = "0.0"  # a format takes no cell
+    made.save(path)
+    assert read_table(path)[0].times.tolist() == [0.0, 10.25, 20.5]
+    made["log"]["A20000"] = made["log"]["XFC1"] = " "
+    made.save(path)
+    monkeypatch.setattr("tyrefem.estimates.memory.free_memory", lambda: 8 * 2.0**30)
+    with pytest.raises(
+        InputError, match=r"far\.xlsx: a sheet's last cell is in column XFC and row 20,000; .* are free; empty "
+    ):
+        read_table(path)
+
+
+def test_an_absurd_duration_is_refused(tmp_path: Path) -> None:
+    path = book(tmp_path / "long.xlsx", log=[["elapsed time", "crown [degC]"], [1e10, 20]])
+    made = openpyxl.load_workbook(path)
+    made["log"]["A2"].number_format = "[h]:mm:ss"
+    made.save(path)
+    with pytest.raises(InputError, match="cannot be read"):
+        read_table(path)

@@ -117,3 +117,12 @@ def test_one_set_needs_no_experiment() -> None:
     every = readings()
     alone = replace(every.beliefs, sets=(replace(every.beliefs.sets[0], probability=1.0),))
     assert greedy_batch(replace(every, beliefs=alone), DRIVES, PLACES, PlanChoice()).chosen == ()
+
+
+def test_a_cheap_sensor_that_tells_nearly_nothing_does_not_end_the_plan() -> None:
+    """Per cost it is far ahead of a further run, which tells much."""
+    every, faint = readings(), np.array([[0.0, 0.0, 0.1]])
+    grams = every.grams | {(number, name): faint.T @ faint for number in range(len(DRIVES)) for name in FURTHER}
+    choice = PlanChoice(sensor_cost=1e-3, runs_most=3, sensors_most=2)
+    chosen = greedy_batch(replace(every, grams=grams), DRIVES, PLACES, choice).chosen
+    assert [entry.drive for entry in chosen] == [2, 2, 2]

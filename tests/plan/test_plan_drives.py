@@ -141,3 +141,12 @@ def test_a_place_off_the_section_or_a_name_in_use_is_refused() -> None:
     with pytest.raises(InputError, match="give the further sensor another name"):
         with_candidate_sensors(taken, ())
     assert with_candidate_sensors(planned({"sensors_most": 0}), ())[1] == ()
+
+
+def test_limits_count_as_they_are_written() -> None:
+    """A space before the unit may be left out; rounded, a corner might lie beyond what the rig can do."""
+    limits = {"drive.speed": ["10mph", "30mph"], "drive.load": ["12009.6 N", "12345.4 N"]}
+    drives = candidate_drives(planned({"limits": limits, "drives": 5}))
+    assert drives[0].changes == {"speed": "20 mph", "load": "1.218e+04 N"}
+    corners = {(drive.changes["speed"], drive.changes["load"]) for drive in drives[1:]}
+    assert corners == {(speed, load) for speed in limits["drive.speed"] for load in limits["drive.load"]}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from pathlib import Path
 
@@ -9,7 +10,8 @@ import pytest
 
 import tyrefem as tf
 from tyrefem.boundaries import laws
-from tyrefem.effects import catalogue
+from tyrefem.contracts import template
+from tyrefem.effects import catalogue, use_effects
 from tyrefem.errors import PluginWarning
 from tyrefem.mechanics.strain_laws import strain_laws
 from tyrefem.plugins import registry, use
@@ -217,3 +219,33 @@ def test_an_edited_file_is_read_again(write: Write, folder: Path) -> None:
     write("effect", ("A lamp shines", "A sun lamp shines"))
     use(folder)
     assert "A sun lamp" in catalogue()["lamp"].sentence
+
+
+@pytest.mark.parametrize("place", ["~no-such-user-42/plugins", "a" * 3000])
+def test_a_folder_that_cannot_be_is_a_warning_too(place: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("TYREFEM_PLUGINS", place)
+    with pytest.warns(PluginWarning, match="which is not a folder"):
+        assert registry().plugins == ()
+    with pytest.raises(tf.InputError, match="no such file or folder"):
+        use(place)
+
+
+def test_a_file_whose_loading_was_interrupted_is_loaded_again(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Half of its module counted as loaded, without the classes that were to follow."""
+    lines = ("import os", "if os.environ.pop('INTERRUPTED', ''):", "    raise KeyboardInterrupt", "value = 1", "")
+    file = folder / "slow.py"
+    file.write_text("\n".join(lines), encoding="utf-8")
+    monkeypatch.setenv("INTERRUPTED", "yes")
+    with pytest.raises(KeyboardInterrupt):
+        registry()
+    assert [module.module.value for module in registry().modules if module.origin.file == file.resolve()] == [1]
+
+
+def test_a_folder_with_the_separator_of_paths_in_its_name_is_refused_in_words(folder: Path) -> None:
+    """As a time has it, 12:30: it was split, and said to have no effect."""
+    place = folder / f"12{os.pathsep}30"
+    place.mkdir()
+    (place / "lamp.py").write_text(template("effect", "lamp"), encoding="utf-8")
+    for name in (use, use_effects):
+        with pytest.raises(tf.InputError, match="which separates the folders in TYREFEM_PLUGINS"):
+            name(place)

@@ -50,6 +50,16 @@ def test_every_deviation_that_a_card_states_is_somebodys(name: str) -> None:
     assert set(study.uncertainty) == {number.key for number in study.uncertain_numbers if not number.idle}
 
 
+@pytest.mark.parametrize("name", ["section.layers.belt-1.angle", "materials. belt-1 .cords.angle"])
+def test_every_name_of_a_number_of_a_card_moves_it_in_all_regions(name: str) -> None:
+    """The angle of a layer is that of the cords on its card, which both belts have."""
+    number = uncertain_number(radial(), name)
+    assert number.keys == ("materials.belt-1.cords.angle", "materials.belt-2.cords.angle")
+    two = {f"uncertainty.{name}": "2 %", "uncertainty.materials.belt-2.cords.angle": "3 %"}
+    with pytest.raises(InputError, match="is the same number as"):
+        _ = radial().replace(two).uncertain_numbers
+
+
 def test_one_card_in_several_regions_is_one_number() -> None:
     study = radial()
     number = by_key(study)["materials.body-ply.cords.modulus"]

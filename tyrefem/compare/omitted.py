@@ -35,7 +35,7 @@ def _clock(experiment: Experiment, first: float, last: float) -> str:
     if end - begin > last - first:
         return ""
     return (
-        f" (its clock runs from {begin:g} to {end:g} s: if the drive starts with it, add {first - begin:g} s to the "
+        f" (its clock runs from {begin:g} to {end:g} s: if the drive starts with it, add {first - begin:.12g} s to the "
         "'time_offset' of its [[measured]] entry)"
     )
 

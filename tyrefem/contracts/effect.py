@@ -8,10 +8,12 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tyrefem.contracts.contract import Contract, finite_run, kept, of_trials
 from tyrefem.contracts.study import quick_study
 from tyrefem.effects import Effect
+from tyrefem.effects.effect import FILMS, SINKS
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
 from tyrefem.mechanics.user_cycle import points_of
@@ -20,9 +22,12 @@ from tyrefem.simulation.effect_trials import effect_trials
 from tyrefem.simulation.run import run
 from tyrefem.simulation.surroundings import Surroundings
 
-#: Ports whose neutral value is a factor of 1, a shift of 0, a pair of ones; others have no neutral value to the bit.
-FACTORS = ("heat_factor", "capacity_factor", "film_factor", "gas_capacity_factor")
-SHIFTS = ("heat_addend", "film_addend", "film_resistance", "sink_addend", "flux", "rim_power", "lag_addend", "offset")
+#: Ports whose neutral value is a factor of 1 (or a pair of ones), and a shift of 0 (or a pair of zeros).
+FACTORS = ("heat_factor", "capacity_factor", "conductivity_factor", "film_factor", "gas_capacity_factor")
+SHIFTS = (
+    "heat_addend", "film_addend", "film_resistance", "sink_addend", "flux", "rim_power", "lag_addend", "offset",
+    "displacement", "clock",
+)  # fmt: skip
 
 
 def contracts(effect: type[Effect], study_name: str | None = None) -> Iterator[Contract]:
@@ -34,7 +39,13 @@ def contracts(effect: type[Effect], study_name: str | None = None) -> Iterator[C
         if refusal:
             yield Contract(f"it is possible in {study.name}", f"{refusal}; set signature = Signature(changes=...)")
             return
-        choice = dict(effect.signature.choice or effect.variants(study)[0])
+        variant = effect.signature.choice or next(iter(effect.variants(study)), None)
+        if variant is None:
+            yield Contract(
+                f"it is possible in {study.name}", "no variant of it is; set signature = Signature(changes=...)"
+            )
+            return
+        choice = dict(variant)
         tried = {name: effect.check({**choice, **table}) for name, table in _tables(effect).items()}
     except InputError as error:
         yield Contract("its parameters can be set from their lower to their upper bound", str(error))
@@ -67,9 +78,9 @@ def _tables(effect: type[Effect]) -> dict[str, dict[str, str]]:
 
 
 def _typical(parameter: Any) -> float:
-    """A typical value of a parameter: its origin and one standard deviation, or its start."""
+    """A typical value of a parameter: an amplitude's usual one, or the start of a shape."""
     prior = parameter.prior
-    return float(min(prior.null + prior.scale, prior.high)) if prior.amplitude else float(prior.origin)
+    return float(prior.usual if prior.amplitude else prior.origin)
 
 
 def _entry(effect: type[Effect], choice: dict[str, str]) -> dict[str, str]:
@@ -108,7 +119,8 @@ def _with(tyre: Surroundings, effect: Effect) -> Surroundings:
     """The tyre with an effect, for its states."""
     if not effect.states:
         return tyre
-    table = effect.model_dump(exclude={"sd", "provenance", "runs"})
+    # Choices as a study writes them: a number with its unit.
+    table = effect.model_dump(exclude={"sd", "provenance", "runs"}, exclude_none=True) | effect.choice
     written = {parameter.name: parameter.prior.text(table.pop(parameter.name), 12) for parameter in effect.parameters()}
     return Surroundings(tyre.study.replace({"effects": [{"name": effect.name, **table, **written}]}))
 
@@ -139,27 +151,36 @@ def _vectorised(tyre: Surroundings, tried: dict[str, Effect]) -> str | None:
 
 
 def _neutral(tyre: Surroundings, effect: Effect) -> str | None:
-    """The first port of an effect at null that still changes something."""
+    """The first port of an effect at null that still changes something, in any zone, film, surface or sensor."""
     tyre = _with(tyre, effect)
-    zone = tyre.schedule.zones[0]
-    x = points_of(tyre.study.section, zone)
-    T, t = np.full(x.shape[1], 60.0), 0.5 * tyre.drive.end
-    sensor = next(iter(tyre.study.sensors))
-    arguments: dict[str, tuple[Any, ...]] = {
-        "heat_factor": (tyre, zone.name, x, t, T), "heat_addend": (tyre, zone.name, x, t, T),
-        "capacity_factor": (tyre, zone.region, T), "film_factor": (tyre, "outside_air", t),
-        "film_addend": (tyre, "outside_air", t), "film_resistance": (tyre, "rim", t),
-        "sink_addend": (tyre, "outside_air", t), "flux": (tyre, effect.surfaces[0], x, t),
-        "gas_capacity_factor": (tyre,), "rim_power": (tyre, t), "lag_addend": (sensor,), "offset": (sensor,),
+    t = 0.5 * tyre.drive.end
+    points = [(zone.name, points_of(tyre.study.section, zone)) for zone in tyre.schedule.zones]
+    zones = [(tyre, name, x, t, np.full(x.shape[1], 60.0)) for name, x in points]
+    regions = [(tyre, region, np.array([60.0])) for region in tyre.study.section.regions]
+    films, sinks = ([(tyre, name, t) for name in names] for names in (FILMS, SINKS))
+    surfaces = [(tyre, surface, points[0][1], t) for surface in effect.surfaces]
+    sensors = [(name,) for name in tyre.study.sensors]
+    arguments: dict[str, list[tuple[Any, ...]]] = {
+        "heat_factor": [*zones], "heat_addend": [*zones], "capacity_factor": [*regions],
+        "conductivity_factor": [*regions], "film_factor": [*films], "film_addend": [*films],
+        "film_resistance": [*films], "sink_addend": [*sinks], "flux": [*surfaces], "gas_capacity_factor": [(tyre,)],
+        "rim_power": [(tyre, t)], "lag_addend": [*sensors], "offset": [*sensors], "displacement": [*sensors],
+        "clock": [()],
     }  # fmt: skip
     for names, value in ((FACTORS, 1.0), (SHIFTS, 0.0)):
-        for method in names:
-            if effect.overrides(method):
-                given = np.asarray(getattr(effect, method)(*arguments[method]), dtype=float)
+        for method in (name for name in names if effect.overrides(name)):
+            for each in arguments[method]:
+                given = _numbers(getattr(effect, method)(*each))
                 if not (given == value).all():
-                    other = float(given[given != value].flat[0])
+                    other = float(given[given != value][0])
                     return f"{method} gives {other!r} at null; it must give {value:g}"
     return None
+
+
+def _numbers(given: Any) -> NDArray[np.float64]:
+    """(n,) numbers of a port's value, which may be a pair."""
+    parts = given if isinstance(given, tuple) else (given,)
+    return np.concatenate([np.ravel(np.asarray(part, dtype=float)) for part in parts])
 
 
 def _same_run(study: StudyData, effect: type[Effect], choice: dict[str, str]) -> str | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import keyword
 import re
 import tempfile
 from pathlib import Path
@@ -27,12 +28,13 @@ def template(kind: str, name: str) -> str:
 
     Raises
     ------
-    InputError : a name that is not of small letters, digits and single hyphens.
+    InputError : a name that is not of small letters, digits and single hyphens, or whose class would be a word of
+        Python, such as none.
 
     >>> "class HotWind(OutsideAirLaw):" in template("boundary-law", "hot-wind")
     True
     """
-    if not _ALLOWED.fullmatch(name):
+    if not _ALLOWED.fullmatch(name) or keyword.iskeyword(class_name(name)):
         raise InputError(f"'{name}' is not allowed as a plugin's name; allowed: small letters, digits, -, as hot-wind")
     text = (Path(__file__).parent / "templates" / f"{kind}.txt").read_text(encoding="utf-8")
     return text.replace("CLASS", class_name(name)).replace("NAME", name)

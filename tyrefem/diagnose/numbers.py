@@ -46,13 +46,17 @@ def chance(log_odds: float) -> float:
 
 
 def at_least(probability: float) -> str:
-    """A lower limit of a probability as text.
+    """A lower limit of a probability as text: not rounded up.
 
-    >>> at_least(0.97), at_least(0.99999)
-    ('at least 97 %', 'more than 99.99 %')
+    >>> at_least(0.97), at_least(0.9656), at_least(0.99999)
+    ('at least 97 %', 'at least 96 %', 'more than 99.99 %')
     """
     text = percent(probability)
-    return text if text.startswith(("more", "less")) else f"at least {text}"
+    if text.startswith(("more", "less")):
+        return text
+    decimals = len(text.removesuffix(" %").partition(".")[2])
+    scale = 10.0**decimals
+    return f"at least {math.floor(100 * probability * scale + 1e-9) / scale:.{decimals}f} %"
 
 
 def amount(value: float, sd: float, unit: str) -> str:

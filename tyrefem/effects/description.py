@@ -53,13 +53,13 @@ def _start(prior: Prior) -> float:
 
 
 def example(effect: type[Effect]) -> str:
-    """An entry of a study file: each choice as its field's first example, each amplitude at the prior's scale."""
+    """An entry of a study file: each choice as its field's first example, each amplitude at its usual value."""
     lines = ["[[effects]]", f'name = "{effect.name}"']
     required = {name: field for name, field in effect.model_fields.items() if field.is_required()}
     lines += [f'{name} = "{_first_example(field)}"' for name, field in required.items()]
     for parameter in effect.parameters():
         if parameter.prior.amplitude:
-            value = parameter.prior.text(parameter.prior.null + parameter.prior.scale)
+            value = parameter.prior.text(parameter.prior.usual)
             lines.append(
                 f"{parameter.name} = {value}" if parameter.prior.unit == "1" else f'{parameter.name} = "{value}"'
             )

@@ -77,6 +77,17 @@ class Prior:
         return f"{number:.{digits}g}{'' if unit == '1' else f' {unit}'}"
 
     @property
+    def usual(self) -> float:
+        """The value one standard deviation from ``null``, on an allowed side and within the bounds.
+
+        >>> Prior("W/m**2", "cooling", 200.0, -9000.0, 0.0).usual, Prior("1", "gain", 2.0, 0.0, 20.0).usual
+        (-200.0, 2.0)
+        """
+        if self.high > self.null:
+            return min(self.null + self.scale, self.high)
+        return max(self.null - self.scale, self.low)
+
+    @property
     def origin(self) -> float:
         """Origin of the parameter in a fit: the null of an amplitude, the start of a shape."""
         return self.null if self.amplitude or self.start is None else self.start

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
 from tyrefem.effects.effect import Effect, Factor, Prior
-from tyrefem.effects.part_of_drive import Begins, Ends, is_outside, stated_times, times_in_words
+from tyrefem.effects.part_of_drive import Begins, Ends, check_order, is_outside, stated_times, times_in_words
 from tyrefem.effects.tyre import Tyre
 from tyrefem.quantity import Unit
 
@@ -55,6 +55,7 @@ class MissingFlux(Effect):
     def _about_a_station_or_everywhere(self) -> Self:
         if (self.station is None) != (self.width is None):
             raise ValueError("state both station and width, or neither for the whole surface")
+        check_order(self.begins, self.ends)
         return self
 
     @property

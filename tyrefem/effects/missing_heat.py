@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Annotated, ClassVar
+from typing import Annotated, ClassVar, Self
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from tyrefem.effects.effect import Effect, Factor, Prior
-from tyrefem.effects.part_of_drive import Begins, Ends, is_outside, stated_times, times_in_words
+from tyrefem.effects.part_of_drive import Begins, Ends, check_order, is_outside, stated_times, times_in_words
 from tyrefem.effects.tyre import Tyre
 from tyrefem.quantity import Unit
 
@@ -41,6 +41,11 @@ class MissingHeat(Effect):
     begins: Begins = None
     ends: Ends = None
     heat: Annotated[float, Prior("W/m**3", "heat at the station", 5e4, -1e7, 1e7)] = 0.0
+
+    @model_validator(mode="after")
+    def _in_order(self) -> Self:
+        check_order(self.begins, self.ends)
+        return self
 
     @property
     def choice(self) -> dict[str, str]:

@@ -14,6 +14,17 @@ Begins = Annotated[
 Ends = Annotated[float | None, Unit("s", ge=0), Field(description="ends at this time of the drive", examples=["600 s"])]
 
 
+def check_order(begins: float | None, ends: float | None) -> None:
+    """Refuse an end before the begin: the effect would never act.
+
+    Raises
+    ------
+    ValueError : ``ends`` is before ``begins``.
+    """
+    if begins is not None and ends is not None and ends < begins:
+        raise ValueError(f"ends at {ends:g} s, before it begins at {begins:g} s")
+
+
 def stated_times(begins: float | None, ends: float | None) -> tuple[float, ...]:
     """Begin and end, s, as far as they are stated."""
     return tuple(time for time in (begins, ends) if time is not None)

@@ -138,9 +138,14 @@ def numbers(cells: Sequence[str], lines: Sequence[int], column: str, file: Path,
 
 
 def has_words_only(cells: Sequence[str]) -> bool:
-    """Whether every cell of a column has letters, and none a number, a clock time or a word for a missing reading."""
+    """Whether every cell of a column has letters, and none a number, a clock time or a word for a missing reading.
+
+    A column without cells has no words.
+    """
     gaps = NO_READING | BROKEN
-    return all(any(map(str.isalpha, cell)) and ":" not in cell and cell.lower() not in gaps for cell in set(cells))
+    return bool(cells) and all(
+        any(map(str.isalpha, cell)) and ":" not in cell and cell.lower() not in gaps for cell in set(cells)
+    )
 
 
 def is_number(cell: str) -> bool:

@@ -78,7 +78,8 @@ def texts(path: Path) -> dict[str, str]:
         reason = f"cannot be read: {getattr(error, 'strerror', None) or error}{_beside(path)}"
         raise InputError(reason, file=path) from None
     if is_workbook(data):
-        return {name: unicodedata.normalize("NFC", text) for name, text in sheet_texts(data, path).items()}
+        of_sheets = sheet_texts(data, path).items()
+        return {unicodedata.normalize("NFC", name): unicodedata.normalize("NFC", text) for name, text in of_sheets}
     try:
         marked = data.startswith((b"\xff\xfe", b"\xfe\xff"))
         text = data.decode("utf-16" if marked else "utf-8-sig")

@@ -27,13 +27,14 @@ class Sheet:
     Parameters
     ----------
     lines : heading and rows. file : the table in errors. name : of the run of a table without a run column.
-    in_memory : whether the table is no file.
+    in_memory : whether the table is no file. sheet : its name in errors; None: the file has no other.
     """
 
     lines: Lines
     file: Path
     name: str
     in_memory: bool = False
+    sheet: str | None = None
 
     def runs(self, names: ColumnNames) -> tuple[str, ...]:
         """Names of the runs, if no more than one column has them."""

@@ -107,11 +107,11 @@ class TableLines:
         self, *, time_offset: float = 0.0, rename: Mapping[str, str] | None = None, ignore: Iterable[str] = ()
     ) -> MeasuredTable:
         """The runs; arguments and errors as of `read_table`, without the check that the columns to rename exist."""
-        ignore, several = tuple(ignore), len(self.sheets) > 1
+        ignore = tuple(ignore)
         runs: dict[str, MeasuredRun] = {}
         sheet_of: dict[str, str] = {}
         for sheet in self.sheets:
-            with _naming(sheet.name if several else None):
+            with _naming(sheet.sheet):
                 read = sheet.read(time_offset=time_offset, rename=rename, ignore=ignore)
             for run in read:
                 if run.name in runs:
@@ -145,7 +145,8 @@ def table_lines(path: str | Path, rename: Mapping[str, str] | None = None) -> Ta
         note = f"sheets without a time column are left out: {', '.join(others)}"
         lines = {name: replace(of_sheet, notes=(*of_sheet.notes, note)) for name, of_sheet in lines.items()}
     names = dict.fromkeys(lines, file.stem) if len(lines) == 1 else {name: name for name in lines}
-    return TableLines(tuple(Sheet(lines[name], file, names[name]) for name in lines), file, file.stem)
+    sheets = (Sheet(lines[name], file, names[name], sheet=None if alone else name) for name in lines)
+    return TableLines(tuple(sheets), file, file.stem)
 
 
 @contextmanager

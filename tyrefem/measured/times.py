@@ -75,6 +75,9 @@ class TimeColumn:
         if are_timestamps(cells):
             return cls(text, column, STAMPED)
         form = form_of_unit(unit or "")
+        if form == "h:mm" and has_three_numbers(first):
+            # Cells of a workbook have the seconds that their format hides.
+            form = "h:mm:ss"
         dates = [other for other, heading in headings.items() if is_date(heading)]
         # Two numbers beside a date may still be minutes and seconds since a start.
         has_clock = form == "h:mm" or (has_three_numbers(first) and (form == "h:mm:ss" or not unit))

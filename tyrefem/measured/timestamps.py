@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 
 from tyrefem.errors import InputError
 
-_TIMESTAMP = re.compile(r"\d{4}-\d{2}-\d{2}[T ]\d{2}:\d{2}")
+#: A date alone is its midnight, which spreadsheets write so.
+_TIMESTAMP = re.compile(r"\d{4}-\d{2}-\d{2}(?:[T ]\d{2}:\d{2}|\Z)")
 _DATE = re.compile(
     r"(?:(?P<y>\d{4})([-/.])(?P<m>\d{1,2})\2(?P<d>\d{1,2})|(?P<day>\d{1,2})\.(?P<month>\d{1,2})\.(?P<year>\d{4})"
     r"|(?P<first>\d{1,2})/(?P<second>\d{1,2})/(?P<in_year>\d{4}))"
@@ -33,8 +34,10 @@ MONTH_FIRST, DAY_FIRST = ORDERS
 def are_timestamps(cells: Sequence[str]) -> bool:
     """True if the first cell of a column of times that is not empty is a timestamp.
 
-    >>> are_timestamps(["", "2024-05-01 12:30:01"]), are_timestamps(["0.5"]), are_timestamps([])
-    (True, False, False)
+    >>> are_timestamps(["", "2024-05-01 12:30:01"]), are_timestamps(["2024-05-01"])
+    (True, True)
+    >>> are_timestamps(["0.5"]), are_timestamps([])
+    (False, False)
     """
     return _TIMESTAMP.match(_iso(next(filter(None, cells), ""))) is not None
 

@@ -112,12 +112,15 @@ def greedy_batch(
         compared = compared or tuple(entries)
         if not entries:
             break
-        finalists = sorted(entries, key=lambda entry: -entry.per_cost)[:FINALISTS]
+        # A cheap experiment that tells nearly nothing must not end the plan before a dear one that tells much.
+        telling = [entry for entry in entries if entry.gain + 2 * entry.information.sd >= LEAST_GAIN]
+        finalists = sorted(telling, key=lambda entry: -entry.per_cost)[:FINALISTS]
         known = comparison.information(batch, FINAL_SAMPLES).gain if batch.drives else 0.0
         finals = [comparison.of(batch, known, entry.drive, entry.sensor, FINAL_SAMPLES) for entry in finalists]
-        best = max(finals, key=lambda entry: entry.per_cost)
-        if best.gain < max(LEAST_GAIN, best.information.sd):
+        finals = [entry for entry in finals if entry.gain >= max(LEAST_GAIN, entry.information.sd)]
+        if not finals:
             break
+        best = max(finals, key=lambda entry: entry.per_cost)
         chosen.append(best)
         batch = best.batch
     return Search(tuple(chosen), compared)

@@ -139,6 +139,18 @@ def _check_tables(study: StudyData, diagnosed: Mapping[str, Any]) -> None:
         raise InputError(f"belongs to another study: [{changed[0]}] differs from the one that was diagnosed")
 
 
+def _stored(folder: Path) -> Any:
+    """The contents of a folder's ``posterior.json``."""
+    file = folder / POSTERIOR
+    try:
+        return json.loads(file.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        message = f"holds no {POSTERIOR}: name the output folder of 'tyrefem diagnose', or a table of readings"
+        raise InputError(message, file=folder) from None
+    except ValueError:
+        raise InputError("is damaged: diagnose again", file=file) from None
+
+
 def stored_beliefs(study: StudyData, folder: Path) -> Beliefs:
     """After a verdict: the sets in the folder of an earlier diagnosis, see `diagnosed_beliefs`.
 
@@ -146,18 +158,18 @@ def stored_beliefs(study: StudyData, folder: Path) -> Beliefs:
     ------
     InputError : the folder holds no diagnosis of this study.
     """
-    stated, first = study, folder
+    record, file = _stored(folder), folder / POSTERIOR
+    try:
+        # The first look is that at the study; a further one is at the study that the look before has amended.
+        _check_tables(study, record["tables"])
+    except InputError as error:
+        raise error.within(file=file) from None
+    except (KeyError, TypeError):
+        raise InputError("is damaged: diagnose again", file=file) from None
     while (folder / AGAIN / POSTERIOR).is_file():
         study = type(study).load(folder / AMENDED)
         folder = folder / AGAIN
-    file = folder / POSTERIOR
-    try:
-        record = json.loads(file.read_text(encoding="utf-8"))
-    except FileNotFoundError:
-        message = f"holds no {POSTERIOR}: name the output folder of 'tyrefem diagnose', or a table of readings"
-        raise InputError(message, file=folder) from None
-    except ValueError:
-        raise InputError("is damaged: diagnose again", file=file) from None
+        record, file = _stored(folder), folder / POSTERIOR
     try:
         if (law := record.get("strain_law")) is not None:
             study = by_law(study, str(law["name"]), float(law["level"]))
@@ -165,8 +177,6 @@ def stored_beliefs(study: StudyData, folder: Path) -> Beliefs:
         noise = {str(name): float(value) for name, value in record["noise_K"].items()}
         runs, verdict = tuple(map(str, record["runs"])), str(record["verdict"])
         part = tuple(map(str, record.get("part", ())))
-        if folder == first:
-            _check_tables(stated, record["tables"])
         absent = [name for name in noise if name not in (*study.sensors, *OUTSIDE_THE_RUBBER)]
         if absent:
             raise InputError(f"belongs to another study: {quoted(absent, study.sensors)} is no sensor of this one")

@@ -17,7 +17,7 @@ from tyrefem.errors import InputError, nearest
 from tyrefem.inputs.changes import scaled
 from tyrefem.inputs.plan_choice import Limits, limit_unit
 from tyrefem.inputs.study import StudyData
-from tyrefem.quantity import convert, parse
+from tyrefem.quantity import amount_parts, convert, parse
 
 Array = NDArray[np.float64]
 #: Limits without stated ones: factors on the study's drive (estimates).
@@ -170,20 +170,25 @@ def _scalable(study: StudyData, key: str, value: Any) -> bool:
 
 
 def between(low: str, high: str, share: float, unit: str) -> str:
-    """The quantity at a share of the way from ``low`` to ``high``, in the unit of the lower limit.
+    """The quantity at a share of the way from ``low`` to ``high``, in the unit of the lower limit; a limit as written.
 
-    >>> between("10 mph", "40 mph", 0.5, "m/s"), between("1 m/s", "40 mph", 1.0, "m/s")
-    ('25 mph', '17.88 m/s')
+    >>> between("10 mph", "40mph", 0.5, "m/s"), between("1 m/s", "40 mph", 0.5, "m/s")
+    ('25 mph', '9.441 m/s')
+    >>> between("12345 N", "20 kN", 0.0, "N"), between("12345 N", "20 kN", 1.0, "N")
+    ('12345 N', '20 kN')
     """
-    amounts = [text.strip().partition(" ") for text in (low, high)]
-    if unit != "1" and amounts[0][2] == amounts[1][2]:
+    if share in (0.0, 1.0):
+        # Rounded, it might lie beyond the limit.
+        return (high if share else low).strip()
+    amounts = [amount_parts(text) or (text, "") for text in (low, high)]
+    if unit != "1" and amounts[0][1] == amounts[1][1]:
         first, last = (float(amount[0]) for amount in amounts)
-        return f"{first + share * (last - first):.4g} {amounts[0][2]}"
+        return f"{first + share * (last - first):.4g} {amounts[0][1]}"
     values = [parse(text, unit) for text in (low, high)]
     value = values[0] + share * (values[1] - values[0])
     if unit == "1":
         return f"{value:.4g}"
-    written = amounts[0][2] if unit != "degC" else unit
+    written = amounts[0][1] if unit != "degC" else unit
     return f"{convert(value, unit, written) if written != unit else value:.4g} {written}"
 
 

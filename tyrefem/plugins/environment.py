@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 
 #: Folders of the user's files, separated as in PATH; a single file may stand there too. The second is the older name.
@@ -22,9 +23,11 @@ def places(values: tuple[str, str, str]) -> Iterator[tuple[str, Path]]:
     known = set()
     for variable, value in zip((FOLDERS, EFFECTS), values, strict=False):
         for text in filter(None, value.split(os.pathsep)):
-            path = Path(text).expanduser()
-            if path.resolve() not in known:
-                known.add(path.resolve())
+            path = Path(text)
+            with suppress(RuntimeError):  # no such user's home: the path is not there, which is told
+                path = path.expanduser()
+            if os.path.realpath(path) not in known:
+                known.add(os.path.realpath(path))
                 yield variable, path
 
 

@@ -101,6 +101,10 @@ def _executed(name: str, file: Path, content: bytes) -> LoadedModule:
             del sys.modules[name]
             reason = error.message if isinstance(error, InputError) else failure_words(error, str(file))
             raise InputError(f"cannot be loaded: {reason}", file=file) from error
+        except BaseException:
+            # Interrupted: half of a module must not count as loaded.
+            del sys.modules[name]
+            raise
     version = str(getattr(module, "__version__", ""))
     origin = Origin(file=file, version=version, sha256=hashlib.sha256(content).hexdigest())
     return LoadedModule(name, module, origin, content=content)

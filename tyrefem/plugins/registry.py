@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import multiprocessing
+import os
 import re
 import threading
 import warnings
@@ -149,7 +150,8 @@ def _loaded(values: tuple[str, str, str], received: tuple[str, ...] | None) -> t
     places = [*environment.places(values)] if received is None else [("", Path(file)) for file in received]
     tried: set[Path] = set()  # a file may be named by itself and by its folder
     for variable, place in places:
-        if not place.exists():
+        # Not `Path.exists`, which fails at a name that is too long or in a folder that may not be read.
+        if not os.path.exists(place):
             words = f"{variable} names '{place}', which is not a folder"
             failures.append(Failure(Origin(file=place), words))
             continue

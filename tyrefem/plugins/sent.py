@@ -57,11 +57,18 @@ def use(place: str | Path) -> None:
 
     Raises
     ------
-    InputError : there is no such folder or file.
+    InputError : there is no such folder or file, or its path has the separator of paths.
     """
-    path = Path(place).expanduser().resolve()
-    if not path.exists():
+    try:
+        path = Path(place).expanduser().resolve()
+        known = path.exists()
+    except (OSError, RuntimeError):  # a name that is too long, no such user's home
+        known = False
+    if not known:
         raise InputError("no such file or folder of plugins", file=str(place))
+    if os.pathsep in str(path):
+        wrong = f"has a '{os.pathsep}' in its path, which separates the folders in {environment.FOLDERS}: rename it"
+        raise InputError(wrong, file=str(place))
     values = environment.state()
     if path not in [other.resolve() for _, other in environment.places(values)]:
         os.environ[environment.FOLDERS] = os.pathsep.join([*filter(None, [values[0]]), str(path)])

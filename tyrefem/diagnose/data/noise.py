@@ -79,7 +79,8 @@ def noise_of(
         for closer in (by_sensor[sensor], _Estimate.of([piece])):
             if closer.sd <= settings.noise_sd and closer.clearly_differs(estimate.size, settings.noise_own):
                 estimate = closer
-        step = resolution(values)
+        # A few readings are multiples of some step by chance; two always are.
+        step = resolution(values) if len(piece) else 0.0
         size = estimate.size * scale
         # Readings that stick to their steps are off by up to half a step, many neighbours alike.
         sticks = size < step / 2

@@ -37,11 +37,12 @@ def by_law(study: StudyData, law: str, level: float) -> StudyData:
     A law that presses the tyre on the road does so in linear motion, which takes seconds.
     """
     entries = [dict(entry) for entry in study.data.get("effects", [])]
-    known = next((entry for entry in entries if entry["name"] == SHAPE and str(entry.get("half_waves")) == "0"), None)
+    shapes = (entry for entry in entries if entry["name"] == SHAPE and not entry.get("runs"))
+    known = next((entry for entry in shapes if str(entry.get("half_waves")) == "0"), None)
     if known is None:
         known = {"name": SHAPE, "half_waves": "0", "log_factor": 0.0}
         entries.append(known)
-    known["log_factor"] = float(known["log_factor"]) + level
+    known["log_factor"] = float(known.get("log_factor", 0.0)) + level
     known["sd"] = {"log_factor": LEVEL_SD}
     motion = {"mechanics.motion": "linear"} if strain_laws()[law].presses else {}
     return study.replace({"mechanics.strain": law, "effects": entries} | motion)

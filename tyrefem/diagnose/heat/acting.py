@@ -118,6 +118,8 @@ def _times(course: Course, grid: CourseGrid, run: int) -> tuple[float, float]:
         return course.time, math.inf
     if course.time is not None and course.kind == ENDS:
         return -math.inf, course.time
+    if not course.kind.startswith(PHASE):
+        return -math.inf, math.inf
     phase = course.kind.removeprefix(PHASE)
     return next(((start, end) for name, start, end in grid.phases[run] if name == phase), (-math.inf, math.inf))
 

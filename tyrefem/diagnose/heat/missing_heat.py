@@ -10,6 +10,7 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import ndtr
 
 from tyrefem.brief import Brief
 from tyrefem.diagnose.data.residuals import Residuals
@@ -196,7 +197,8 @@ def _estimated(
     half = k // 2
     study = residuals.study
     stations = np.array([float(dict(each.choice)["station"].split()[0]) for each in unknown[:half]])
-    watts = _watts(study, stations, mean[:, :half].mean(axis=0), mean[:, half:].mean(axis=0))
+    width = float(dict(unknown[0].choice)["width"].split()[0])
+    watts = _watts(study, stations, width, mean[:, :half].mean(axis=0), mean[:, half:].mean(axis=0))
     first = int(np.argmax(_score(mean, spread, half))) if chosen is None else unknown.index(chosen)
     worst = first % half
     s, depth = np.array([stations[worst]]), study.section.rubber_thickness([stations[worst]]) / 2
@@ -231,11 +233,16 @@ def _score(mean: Array, spread: Array, half: int) -> Array:
     return np.hypot(ratio[:half], ratio[half:])
 
 
-def _watts(study: StudyData, stations: Array, heat: Array, flux: Array) -> Array:
-    """Missing heat of the tyre by station, W: heat times ring volume plus flux times ring surface."""
+def _watts(study: StudyData, stations: Array, width: float, heat: Array, flux: Array) -> Array:
+    """Missing heat of the tyre by station, W: heat times volume plus flux times surface, of both halves.
+
+    A patch is exp(-((s - station)/width)^2 / 2) between crown and bead, of the radius and thickness at its station.
+    """
     section = study.section
-    spacing = section.line.length / len(stations)
+    along = width * math.sqrt(2 * math.pi) * (
+        ndtr((section.line.length - stations) / width) - ndtr(-stations / width)
+    )  # fmt: skip
     radius = section.line.position(stations)[:, 0]
     thickness = np.asarray(section.rubber_thickness(stations))
-    ring = 2 * np.pi * radius * spacing * 2
+    ring = 2 * np.pi * radius * along * 2
     return np.asarray(ring * (heat * thickness + flux))

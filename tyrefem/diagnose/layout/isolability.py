@@ -20,6 +20,7 @@ from tyrefem.diagnose.inference.linear_model import DesignMatrix, LinearModel
 from tyrefem.diagnose.inference.set_evidences import SetEvidences
 from tyrefem.diagnose.layout.planned_runs import NEEDS, candidates_of, layout_notes, planned_sensitivities
 from tyrefem.diagnose.unknowns.candidates import Candidate, Members, SetPrior
+from tyrefem.diagnose.unknowns.unknown import Unknown
 from tyrefem.inputs.study import StudyData
 from tyrefem.inputs.study_plugins import plugin_summary
 from tyrefem.quantity import convert
@@ -195,7 +196,7 @@ def isolability(
         if progress is not None:
             progress("effects", i + 1, n)
     runs, untried = fewest_runs(known, candidates, prior, smallest)
-    scale = np.array([candidate.amplitudes[0].sd if candidate.amplitudes else 1.0 for candidate in candidates])
+    scale = np.array([abs(_usual_amplitude(each.amplitudes[0])) if each.amplitudes else 1.0 for each in candidates])
     shares = np.array([1 / sum(other.name == candidate.name for other in candidates) for candidate in candidates])
     return Isolability(
         study.name,
@@ -210,6 +211,11 @@ def isolability(
         (*layout_notes(study), *untried),
         tuple(plugin_summary(study, [candidate.name for candidate in candidates])["plugins"]),
     )
+
+
+def _usual_amplitude(unknown: Unknown) -> float:
+    """x at one prior standard deviation, or at a nearer bound; on the side of positive values if they are allowed."""
+    return min(unknown.sd, unknown.high) if unknown.high > 0 else max(-unknown.sd, unknown.low)
 
 
 class _SingleEffects:
@@ -227,8 +233,7 @@ class _SingleEffects:
         values = np.zeros(len(self._design.unknowns))
         values[self._design.columns(candidate.presence)] = 1.0
         for unknown in candidate.amplitudes:
-            side = 1.0 if unknown.high > 0 else -1.0
-            values[self._design.place[unknown]] = side * min(unknown.sd, abs(side * unknown.high))
+            values[self._design.place[unknown]] = _usual_amplitude(unknown)
         return values
 
     def leads(self, number: int, amplitude: float) -> Array:
@@ -258,8 +263,8 @@ class _SingleEffects:
             closest, lead = self._closest(number, 1.0)
             return 1.0 if lead >= MARGIN else math.inf, names[closest]
         unknown = candidate.amplitudes[0]
-        largest = max(abs(unknown.low), abs(unknown.high)) / unknown.sd
-        largest = min(largest, 20.0)
+        bound = unknown.high if unknown.high > 0 else -unknown.low
+        largest = min(bound / abs(_usual_amplitude(unknown)), 20.0)
         values = np.geomspace(0.02, largest, 40) if largest > 0.02 else np.array([largest])
 
         def remaining(value: float) -> str | None:

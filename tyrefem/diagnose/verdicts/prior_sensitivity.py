@@ -260,7 +260,8 @@ def _beside(
         return None
 
     def shifted(model: UnderDiscrepancy) -> UnderDiscrepancy:
-        of_effect = {key: share for key, share in model.named.items() if key.split(" ")[0] == name}
+        forms = f"{name} (", f"{name} in "  # a name may have spaces
+        of_effect = {key: share for key, share in model.named.items() if key == name or key.startswith(forms)}
         acts, odds = min(sum(of_effect.values()), 1.0), math.exp(min(shift_of(model), 700.0))
         total = 1 - acts + acts * odds
         named = {key: min(share * odds / total, 1.0) for key, share in of_effect.items()}
