@@ -11,6 +11,7 @@ import skfem
 from tyrefem.conduction import Conduction, Film, Fixed, Flux, Material, Radiation, Reservoir, SolverError
 from tyrefem.conduction.datum import checked
 from tyrefem.conduction.linear_solver import Ordering
+from tyrefem.conduction.transient import Integration
 from tyrefem.errors import InputError
 
 RUBBER = Material(conductivity=0.21, heat_capacity=2.09e6)
@@ -244,3 +245,44 @@ def test_results_survive_pickling() -> None:
     copy = pickle.loads(pickle.dumps(history))
     assert copy.at([(0.8, 0.3)]) == pytest.approx(history.at([(0.8, 0.3)]), abs=0)
     assert copy.field(-1).flux_through("outside") == history.field(-1).flux_through("outside")
+
+
+def test_a_body_whose_every_node_has_a_given_temperature_is_refused() -> None:
+    mesh = skfem.MeshQuad.init_tensor(np.array([0.1, 0.2]), np.array([0.0, 1.0]))
+    mesh = mesh.with_subdomains({"all": lambda x: x[0] > 0}).with_boundaries(
+        {"inside": lambda x: x[0] < 0.11, "outside": lambda x: x[0] > 0.19}
+    )
+    with pytest.raises(InputError, match="nothing is left to compute"):
+        Conduction(mesh, {"all": RUBBER}, {"inside": Fixed(1.0), "outside": Fixed(2.0)})
+
+
+def test_a_region_without_elements_is_refused() -> None:
+    mesh = MESH.with_subdomains({"none": lambda x: x[0] > 9})
+    with pytest.raises(InputError, match="region 'none' has no elements"):
+        Conduction(mesh, {**REGIONS, "none": RUBBER})
+
+
+@pytest.mark.parametrize("order", [("none", "all"), ("all", "none")])
+def test_a_source_where_there_are_no_elements_has_no_heat(order: tuple[str, str]) -> None:
+    mesh = MESH.with_subdomains({"none": lambda x: x[0] > 9})
+    sources = {name: lambda x, t, T: 1e5 for name in order}
+    history = Conduction(mesh, REGIONS, {"outside": Film(10.0, 20.0)}, sources).transient([0.0, 10.0], 20.0)
+    assert history.budget.generated["none"][-1] == 0.0
+    assert history.budget.generated["all"][-1] > 0.0
+    assert history.budget.imbalance < 1e-9
+
+
+def test_ctrl_c_between_the_parts_of_one_time_leaves_the_whole_times(monkeypatch: pytest.MonkeyPatch) -> None:
+    record, seen = Integration._record, []
+
+    def stop_at_the_third(self: Integration, *given: object) -> None:
+        record(self, *given)
+        seen.append(given)
+        if len(seen) == 3:
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(Integration, "_record", stop_at_the_third)
+    problem = Conduction(MESH, REGIONS, {"outside": Film(10.0, 20.0)})
+    history = problem.transient(np.linspace(0.0, 100.0, 11), 50.0, partial=True)
+    assert history.interrupted
+    assert len(history.times) == len(history.values) == len(history.budget.residual) == 2

@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import re
 
+import numpy as np
 import pytest
 
 import tyrefem as tf
@@ -53,3 +54,28 @@ def test_the_report_has_no_drag_at_rest(tmp_path, ends, shown):
         assert drag == "–"
     else:
         assert float(drag) == pytest.approx(result.rolling_resistance.force, rel=0.01)
+
+
+def test_a_phase_that_ends_at_an_unround_time_has_its_own_resistance():
+    """Three times 10.1 s are 30.299999999999997 s: a reading at 30.3 s has the power after the wheel has stopped."""
+    speeds = {"slow": "5 mph", "slower": "4 mph", "fast": "20 mph", "rest": "0 mph"}
+    phases = [{"name": name, "duration": "10.1 s", "speed": speed} for name, speed in speeds.items()]
+    result = tf.study("nasa-22x5.5-8pr").replace({**COARSE, "drive.phases": phases}).run()
+    assert {*result.tyre.drive.starts, result.tyre.drive.end} <= set(result.times.tolist())
+    assert np.diff(result.times).min() > 1e-6
+    out = result.rolling_resistance
+    assert out.phase == "fast"
+    assert 0.9 * out.cold_force < out.force < out.cold_force
+
+
+@pytest.mark.parametrize("carried", ["load", "deflection"])
+def test_a_tyre_that_leaves_the_road_has_the_resistance_of_its_last_reading_on_it(carried):
+    """Heat and load of the last instant, both next to nothing, gave a tenth of the coefficient."""
+    first = {"load": "2700 lbf", "deflection": "30 mm"}[carried]
+    drive = {key: value for key, value in tf.study("nasa-22x5.5-8pr").data["drive"].items() if key != "load"}
+    lifts = {**drive, "duration": "20 s", carried: {"from": first, "to": first.replace(first.split()[0], "0")}}
+    result = tf.study("nasa-22x5.5-8pr").replace({**COARSE, "drive": lifts}).run()
+    out = result.rolling_resistance
+    assert result.rolling_reading == len(result.times) - 2
+    assert 0.9 * out.cold_coefficient < out.coefficient < out.cold_coefficient
+    assert "last reading under load in rolling\n" in _words(result)

@@ -14,7 +14,7 @@ from tyrefem.api import Exploration, Study
 from tyrefem.errors import InputError
 from tyrefem.realtime.box_certificate import differences, is_temperature
 from tyrefem.realtime.box_checks import limited_answers
-from tyrefem.realtime.box_runs import FullHistory, SettingTask, perform_history
+from tyrefem.realtime.box_runs import FullHistory, SettingTask, perform_history, series_of
 from tyrefem.realtime.default_box import default_box
 from tyrefem.realtime.drive_inputs import drive_inputs, inputs_of
 from tyrefem.realtime.export import write
@@ -227,3 +227,16 @@ def test_a_slider_has_no_levels(small: Study, entry: Any) -> None:
     nested = small.replace({"explore": {"vary": {"drive": {"speed": {"from": "10 mph", "to": "30 mph", "levels": 3}}}}})
     with pytest.raises(InputError, match=r"explore\.vary\.drive\.speed: a slider has no levels"):
         nested.explore()
+
+
+def test_at_a_jump_the_outputs_of_a_full_run_are_those_before_it() -> None:
+    """As `Solution.at` has them; else the certificate states the jump of the pressure as an error."""
+    pressures = {"first": "83 psi", "second": "90 psi"}
+    phases = [{"name": name, "duration": "10 s", "pressure": pressure} for name, pressure in pressures.items()]
+    coarse = {"mesh.size": "12 mm", "mesh.through": 1, "mesh.element": "P1", "numerics.tolerance": "0.5 delta_degC"}
+    result = tyrefem.study("nasa-22x5.5-8pr", {**coarse, "drive.phases": phases}).run()
+    jump = int(np.searchsorted(result.times, 10.0))
+    assert result.times[jump] == 10.0
+    pressure = series_of(result)["gas_pressure"]
+    assert pressure[jump] == pytest.approx(pressure[jump - 1], rel=1e-3)
+    assert pressure[jump + 1] - pressure[jump] == pytest.approx(7 * 6894.757, rel=0.02)

@@ -15,7 +15,7 @@ from tyrefem.errors import InputError
 from tyrefem.mechanics.cycle_schedule import cycle_schedule
 from tyrefem.simulation import feedback
 from tyrefem.simulation.rolling_tyre import RollingTyre
-from tyrefem.simulation.warm_cycles import Warmth
+from tyrefem.simulation.warm_cycles import WarmCycles, Warmth
 
 pytestmark = pytest.mark.fast
 
@@ -190,3 +190,20 @@ def test_the_outcome_is_in_the_summary() -> None:
     assert feedback["change_K"] == list(dataclasses.asdict(coupled().feedback)["changes"])  # type: ignore[arg-type]
     assert feedback["start"]["gauge_pressure_Pa"] < feedback["end"]["gauge_pressure_Pa"]
     assert "feedback" not in plain().summary()
+
+
+def test_ctrl_c_between_two_runs_keeps_the_latest(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Strain cycles by finite elements take minutes between two runs."""
+
+    def stop(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(WarmCycles, "update", stop)
+    study = lumped({"tolerance": "0.001 delta_degC"}, rubber(**softening()), deflection="30 mm", duration="90 s")
+    with pytest.raises(KeyboardInterrupt):
+        study.run()
+    result = study.run(partial=True)
+    assert result.history.interrupted
+    assert result.times[-1] == 90.0
+    assert result.feedback is not None
+    assert not result.feedback.converged

@@ -13,8 +13,8 @@ import pytest
 
 import tyrefem
 from tyrefem.realtime import tyre as realtime
-from tyrefem.realtime.certificate import DriveTask, perform_drive
-from tyrefem.realtime.inputs import Box, BoxDrive, random_drive
+from tyrefem.realtime.certificate import DriveTask, export, perform_drive
+from tyrefem.realtime.inputs import Box, BoxDrive, box_of, random_drive, steady
 from tyrefem.realtime.tyre import GAMMA, PHI, PHI_2, Inputs, RealTimeTyre, inverse
 from tyrefem.variants.task import bundle
 
@@ -247,3 +247,18 @@ def test_rolling_to_rest_has_no_drag_of_rounding(exported):
     assert course.last[0, 0] > 0
     assert resistance[-1] == 0.0
     assert 5.0 < resistance[1:-1].max() < 1000.0
+
+
+@pytest.mark.parametrize(("key", "value"), [("drum_diameter", "2 m"), ("rim_temperature", "90 degC")])
+def test_what_is_no_input_must_be_the_same_in_every_phase(key, value):
+    """Given in one phase only, it would act in all drives of the training."""
+    phases = [{"name": "first", "duration": "10 s"}, {"name": "second", "duration": "10 s", key: value}]
+    study = tyrefem.study("nasa-22x5.5-8pr", {"drive.phases": phases})
+    with pytest.raises(tyrefem.InputError, match=f"'{key}' must be the same in every phase"):
+        steady(box_of(study), np.full(5, 0.5), 10.0).study(study)
+
+
+@pytest.mark.parametrize("duration", [0.5, 0.0])
+def test_drives_of_less_than_a_second_are_refused_before_any_work(tmp_path, duration):
+    with pytest.raises(tyrefem.InputError, match=r"duration: .* must be a second or more"):
+        export(tyrefem.study("nasa-22x5.5-8pr"), tmp_path / "tyre.npz", duration=duration)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,7 @@ import pytest
 from cases import measured, properties, truth
 
 from tyrefem.heating_test.grid import Fineness
+from tyrefem.heating_test.layer_study import _misfits
 from tyrefem.heating_test.parameters import at
 from tyrefem.heating_test.readings import matched
 from tyrefem.heating_test.twin import Twin
@@ -164,3 +166,12 @@ def test_a_number_far_from_the_card_is_named() -> None:
     (words,) = (words for words in identification.words if words.startswith("Unusual"))
     assert "offset of outer is" in words
     assert "standard deviations from the card's 0" in words
+
+
+def test_a_short_test_has_no_misfit_after_its_transients() -> None:
+    """All its readings are within 300 s of a switch of the laser."""
+    card = rig(idle=0.0, heating=200.0, cooling=100.0)
+    block: Any = SimpleNamespace(series=SimpleNamespace(times=np.arange(1.0, 300.0)), residual=np.ones(299))
+    early, late = _misfits(SimpleNamespace(card=card, fit=SimpleNamespace(blocks=[block])))
+    assert early == 1.0
+    assert np.isnan(late)

@@ -112,6 +112,8 @@ def _words(result: Result) -> str:
     rests = [phase.name for phase in result.study.card.drive.phases if phase.stops]
     during = f", end of {resistance.phase}" if len(result.phases) > 1 and resistance.phase else ""
     during = f", last reading before rest in {resistance.phase}" if resistance.phase in rests else during
+    lifted = [phase.name for phase in result.study.card.drive.phases if phase.unloads and not phase.stops]
+    during = f", last reading under load in {resistance.phase}" if resistance.phase in lifted else during
     lines = [
         result.study.title,
         f"  hottest point       {peak['temperature_degC']:7.1f} degC in the {region}, {peak['s_m'] * 1e3:.0f} mm along "

@@ -65,7 +65,8 @@ class HeatBalance(System):
         if not self.variable_capacity:
             self._capacity_rows = np.array([c.row for c in self.capacities.values()])
         moving = self.moving
-        sources = [load for load in moving if isinstance(load, SourceLoad)]
+        # A subdomain without elements has no heat, and no place in the sums of `Sources`.
+        sources = [load for load in moving if isinstance(load, SourceLoad) and load.dofs.size]
         together = [Sources(ops, sources)] if sources else []
         self.moving = [*together, *(load for load in moving if not isinstance(load, SourceLoad))]
         self._timed = [load for load in acting if load.timed]

@@ -89,7 +89,9 @@ class Conduction:
             name: list(c) if isinstance(c, (list, tuple)) else [c] for name, c in (boundaries or {}).items()
         }
         check_partition(self.operators, self.regions)
-        self._balance()  # Checks all names now, so that the error comes with the input.
+        # Checks all names now, so that the error comes with the input.
+        if not self._balance().fixed.free.size:
+            raise InputError("give every node a temperature: nothing is left to compute", field="boundaries")
 
     @property
     def mesh(self) -> Any:
@@ -238,10 +240,11 @@ class Conduction:
             with one_thread():
                 run.run(progress)
         except KeyboardInterrupt:
-            if not partial or not tally.kept:
+            if not partial or not run.gas:
                 raise
             interrupted = True
-        done = len(tally.kept)
+        # Ctrl-C may come between the parts of one time: a time with all of them is finished.
+        done = min(len(tally.kept), len(run.values), len(run.gas))
         when = when[:done]
         gas = np.array(run.gas[:done])
         peaks = run.peaks()

@@ -80,6 +80,8 @@ def check_partition(ops: Operators, regions: Mapping[str, Material]) -> None:
         if not isinstance(material, Material):
             raise InputError(f"must be a Material, not {material!r}", field=f"regions.{name}")
         elements = ops.elements(name)
+        if not elements.size:
+            raise InputError(f"region {name!r} has no elements", field="regions")
         count[elements] += 1
         if np.any(count[elements] > 1):
             others = [o for o in regions if o != name and np.isin(ops.elements(o), elements).any()]

@@ -39,13 +39,13 @@ def contracts(effect: type[Effect], study_name: str | None = None) -> Iterator[C
         if refusal:
             yield Contract(f"it is possible in {study.name}", f"{refusal}; set signature = Signature(changes=...)")
             return
-        variant = effect.signature.choice or next(iter(effect.variants(study)), None)
-        if variant is None:
+        variants = [effect.signature.choice] if effect.signature.choice else [*effect.variants(study)]
+        if not variants:
             yield Contract(
                 f"it is possible in {study.name}", "no variant of it is; set signature = Signature(changes=...)"
             )
             return
-        choice = dict(variant)
+        choice = dict(variants[0])
         tried = {name: effect.check({**choice, **table}) for name, table in _tables(effect).items()}
     except InputError as error:
         yield Contract("its parameters can be set from their lower to their upper bound", str(error))

@@ -121,7 +121,10 @@ def _with_verdict(fit: IdentificationData, verdict: str) -> int:
 
 
 def _misfits(fit: IdentificationData) -> tuple[float, float]:
-    """Root of the mean product of neighbouring residuals of all sensors: in transients, and in the rest, K."""
+    """Root of the mean product of neighbouring residuals of all sensors, K: in transients, and in the rest.
+
+    NaN for a part without readings: a short test is all transient.
+    """
     phases = fit.card.phases
     switches = (phases.idle, phases.idle + phases.heating)
     early, late = [], []
@@ -131,9 +134,13 @@ def _misfits(fit: IdentificationData) -> tuple[float, float]:
         product = r[1:] * r[:-1]
         early.append(product[soon])
         late.append(product[~soon])
-    means = (float(np.mean(np.concatenate(part))) for part in (early, late))
-    first, second = (max(mean, 0.0) ** 0.5 for mean in means)
+    first, second = (_root_of_mean(np.concatenate(part)) for part in (early, late))
     return first, second
+
+
+def _root_of_mean(products: Any) -> float:
+    """NaN without any."""
+    return max(float(np.mean(products)), 0.0) ** 0.5 if products.size else math.nan
 
 
 def study(

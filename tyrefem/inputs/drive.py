@@ -112,6 +112,12 @@ class Phase(Card):
         return self.speed.end <= 0
 
     @property
+    def unloads(self) -> bool:
+        """True if the tyre carries nothing at the end."""
+        carried = self.deflection if self.load is None else self.load
+        return carried is not None and carried.end <= 0
+
+    @property
     def steady_motion(self) -> bool:
         """True if the motion is constant and without slip."""
         return self.speed.constant and not self.slides

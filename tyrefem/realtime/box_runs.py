@@ -13,7 +13,7 @@ from tyrefem.errors import InputError
 from tyrefem.realtime.tyre import STANDSTILL
 from tyrefem.reduced.packed_model import base_of
 from tyrefem.reduced.training import Snapshots, snapshots, sources_at
-from tyrefem.simulation.result import ResultData
+from tyrefem.simulation.result import ResultData, warmed
 from tyrefem.simulation.rolling_resistance import just_before
 from tyrefem.simulation.rolling_tyre import RollingTyre
 from tyrefem.simulation.run import run
@@ -106,14 +106,19 @@ def outcomes(scheduler: Scheduler, work: Any, tasks: Sequence[SettingTask], tick
 
 
 def series_of(result: ResultData) -> dict[str, Array]:
-    """Outputs over the readings of a full run: name -> (n,) degC, Pa, W or N, as in `SettingTyre`."""
+    """Outputs over the readings of a full run: name -> (n,) degC, Pa, W or N, as in `SettingTyre`.
+
+    Gas pressure and powers at a jump are those before it.
+    """
     readings, values, times = result.readings, np.asarray(result.history.values), result.times
     operators = result.tyre.problem.operators
     series: dict[str, Array] = {name: readings[name].to_numpy() for name in readings.columns if name != "time_s"}
     series[GAS] = np.asarray(result.gas_temperature)
     series["hottest"] = values.max(axis=1)
     series |= {f"{region} max": values[:, operators.dofs(region)].max(axis=1) for region in result.tyre.bodies}
-    series["gas_pressure"] = np.array([result.pressure_at(i) for i in range(len(times))])
+    drive, gas = result.study.card.drive, series[GAS]
+    cold = [drive.value("pressure", just_before(times, i)) or 0.0 for i in range(len(times))]
+    series["gas_pressure"] = np.array([warmed(pressure, gas, i) for i, pressure in enumerate(cold)])
     return series | powers(result)
 
 

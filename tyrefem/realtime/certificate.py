@@ -183,7 +183,8 @@ def export(
     Raises
     ------
     InputError : the study is a campaign; the tyre cannot carry a load of the box; a reduced model cannot follow the
-        study; the tolerance was not reached, or is below `numerics.tolerance`; the memory is too small.
+        study; the tolerance was not reached, or is below `numerics.tolerance`; drives shorter than a second; the memory
+        is too small.
     """
     NEEDS.check(study)
     check_suitable(study)
@@ -195,7 +196,10 @@ def export(
             f"{study.tolerance:g} K",
             field="tolerance",
         )
-    box, horizon = box_of(study, ranges), float(duration or study.card.drive.end)
+    box, horizon = box_of(study, ranges), float(study.card.drive.end if duration is None else duration)
+    # Differences are taken at whole seconds.
+    if not horizon >= 1:
+        raise InputError(f"{horizon:g} s is too short for drives: must be a second or more", field="duration")
     report("tables", 0, 1)
     training = _Training(study, box, horizon, settings, report, scheduler)
     report("tables", 1, 1)

@@ -201,6 +201,11 @@ def _kept(study: StudyData) -> dict[str, Any]:
         for key in KEPT:
             if key in phase and kept.setdefault(key, phase[key]) != phase[key]:
                 raise InputError(f"'{key}' must be the same in every phase", field="drive.phases")
+    for key in KEPT:
+        values = [getattr(phase, key) for phase in study.card.drive.phases]
+        if any(value != values[0] for value in values):
+            words = f"'{key}' must be the same in every phase, also in those that do not give it"
+            raise InputError(words, field="drive.phases")
     if isinstance(kept.get("rim_temperature"), Mapping):
         raise InputError("must be constant: it is not an input of a real-time model", field="drive.rim_temperature")
     return kept

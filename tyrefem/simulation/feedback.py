@@ -34,7 +34,7 @@ def run(
     T_(k+1) = run(cycles(T_k)): every run uses strain cycles at the temperatures of the run before. The first uses
     ``start``, by default the drive's initial temperatures. Slow convergence or divergence halves the steps. A result
     that has not converged after the allowed iterations is returned with a warning. ``partial``: see
-    `tyrefem.simulation.run.run`; the finished part is of the latest run.
+    `tyrefem.simulation.run.run`; the finished part is of the latest run, all of it between two runs.
 
     Raises
     ------
@@ -59,7 +59,14 @@ def run(
             break
         if len(changes) > 1 and changes[-1] > SLOW * changes[-2]:
             share = max(share / 2, LEAST)
-        cycles.update(warmth, share)
+        try:
+            cycles.update(warmth, share)
+        except KeyboardInterrupt:
+            if not partial:
+                raise
+            # The latest run is whole; only the next strain cycles are missing.
+            result = replace(result, history=replace(result.history, interrupted=True))
+            break
     end = float(result.times[-1])
     last = warmth.at(end)
     softened = {

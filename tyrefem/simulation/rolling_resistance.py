@@ -23,8 +23,9 @@ class RollingResistance:
     """Rolling resistance from hysteresis, F = (total heat) / v, N, and coefficient F / F_z.
 
     ``force`` and ``coefficient`` are at the end of ``phase``, the rolling phase with most heat, or at its last reading
-    before the tyre comes to rest; ``cold_*`` at the same time with every point at the drive's initial temperature. All
-    are zero if the tyre never rolls. With slip they are the hysteresis per metre of the road, without the friction.
+    before the tyre comes to rest or leaves the road; ``cold_*`` at the same time with every point at the drive's
+    initial temperature. All are zero if the tyre never rolls. With slip they are the hysteresis per metre of the road,
+    without the friction.
     """
 
     phase: str
@@ -60,7 +61,7 @@ class Rolled(Protocol):
 class RollingPhase:
     """A phase in which a loaded tyre rolls: its start and end, s; speed over the road, m/s, and load, N, at its end.
 
-    ``stops``: the tyre is at rest at the end.
+    ``stops``: the tyre is at rest, or off the road, at the end.
     """
 
     name: str
@@ -80,14 +81,16 @@ def rolling_phases(tyre: RollingTyre) -> tuple[RollingPhase, ...]:
         load = float(tyre.schedule.mean(lambda case: case.load, t))
         motion = tyre.motion(t)
         if load > 0 and motion.rolling_speed > TURNS * motion.speed:
-            phases.append(RollingPhase(phase.name, start, end, motion.speed, load, phase.stops))
+            # Heat and load of the last instant, both next to nothing, are of slightly different times.
+            stops = phase.stops or phase.unloads
+            phases.append(RollingPhase(phase.name, start, end, motion.speed, load, stops))
     return tuple(phases)
 
 
 def rolling_reading(result: Rolled) -> int | None:
-    """Index of the last reading of the rolling phase with most heat, in which it still rolls.
+    """Index of the last reading of the rolling phase with most heat, in which it still rolls under load.
 
-    None if the tyre never rolls, or only in phases to rest without a reading before it.
+    None if the tyre never rolls, or only in phases to rest or off the road without a reading before it.
     """
     best = _most_heat(result, rolling_phases(result.tyre))
     return None if best is None else best[0]

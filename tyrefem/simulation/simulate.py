@@ -53,9 +53,12 @@ def breakpoints(tyre: RollingTyre) -> list[float]:
 
 
 def output_times(tyre: RollingTyre) -> tuple[Array, Array]:
-    """Times of the readings, and of the fields that are written out, s."""
+    """Times of the readings, and of the fields that are written out, s.
+
+    The starts of phases are exact: a rounded one may lie after the jump, whose reading states the power before it.
+    """
     end, output = tyre.drive.end, tyre.study.card.output
     fields = np.linspace(0.0, end, output.fields)
-    starts = tyre.drive.starts
-    readings = np.concatenate([np.arange(0.0, end, output.every), starts, tyre.sliding.readings, fields, [end]])
-    return np.unique(np.round(readings, 9)), fields
+    exact = np.array([*tyre.drive.starts, end])
+    readings = np.round(np.concatenate([np.arange(0.0, end, output.every), tyre.sliding.readings, fields]), 9)
+    return np.union1d(exact, readings[~np.isin(readings, np.round(exact, 9))]), fields

@@ -87,7 +87,7 @@ class StrainByRegion(Brief):
 
         ``volume_m3``; ``energy_mean_J_m3``, ``energy_highest_J_m3``: U per cycle; ``highest_s_m``,
         ``highest_depth_m``: where; ``amplitude_mean``, ``amplitude_highest``: shear strain (finite elements only);
-        ``heat_W``, ``heat_share``: of the whole tyre at the start.
+        ``heat_W``, ``heat_share``: of the whole tyre in this load case, all of it at the initial temperature.
         """
         import pandas as pd
 
