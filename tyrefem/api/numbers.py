@@ -14,7 +14,7 @@ from tyrefem.quantity import parse
 UNITS = {
     "pressure": "Pa", "load": "N", "deflection": "m", "drum_diameter": "m", "camber": "rad", "speed": "m/s",
     "slip_angle": "rad", "slip": "1", "torque": "N*m", "axle_force": "N", "turn_slip": "1/m", "friction": "1",
-    "tolerance": "1", "amplitude": "1", "temperature": "degC",
+    "tolerance": "1", "amplitude": "1", "temperature": "degC", "distance": "m",
 }  # fmt: skip
 #: Lists of numbers -> their unit.
 LISTS = {"loads": "N", "slip_angles": "rad", "slips": "1", "cambers": "rad"}

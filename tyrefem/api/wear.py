@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from tyrefem.api.numbers import check_numbers
 from tyrefem.wear.drive_wear import DriveWear
 from tyrefem.wear.ring_wear import RingWear
 
@@ -63,6 +64,7 @@ def _save(
     from tyrefem.reports.wear import FILES, write_files
     from tyrefem.wear.worn_section import worn_section
 
+    check_numbers(distance=distance)
     worn = None if distance is None else worn_section(study, wear, distance / 1e3)
     with saving(folder, "wear", FILES, StudyOrigin(study), force=force) as place:
         write_files(study, rolled, wear, place, worn, pictures=pictures)

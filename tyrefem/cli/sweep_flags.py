@@ -67,7 +67,8 @@ def questions_of_flags(
         "time_to": time_to,
         "answers": answer or None,
         "pareto": _once([_aim(text) for text in pareto or []], "--pareto"),
-        "tornado": {"tolerances": tolerances or {}} if tornado else None,
+        # Without tolerances of its own the flag leaves those of a file as they are.
+        "tornado": ({"tolerances": tolerances} if tolerances else {}) if tornado else None,
         "optimise": _optimise(minimise, maximise, runs, seed),
         "envelope": _envelope(envelope, loads, pressures, speeds),
     }
@@ -87,7 +88,8 @@ def varied(text: str) -> tuple[str, dict[str, Any]]:
     ('materials.tread.loss_tangent.value', {'factor': [0.8, 1.2]})
     """
     key, values = _pair(text, "--vary", "drive.speed=10 mph:40 mph:4")
-    parts = [part.strip() for part in values.split(":")]
+    # Not at the colon of a path such as C:/cards.
+    parts = [part.strip() for part in re.split(r":(?![\\/])", values)]
     if len(parts) == 1:
         return key, {"values": [_plain(part) for part in _listed(values, "--vary")]}
     if len(parts) > 3:

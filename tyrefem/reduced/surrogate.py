@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -9,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from tyrefem.brief import Brief
+from tyrefem.errors import InputError
 from tyrefem.inputs.changes import all_changed, value_at
 from tyrefem.inputs.study import StudyData
 from tyrefem.reduced.answers import ReducedOutcome, reduced_answers
@@ -20,7 +22,7 @@ from tyrefem.reduced.training import ReducedFineness
 from tyrefem.reduced.training_rounds import Training, check_reducible
 from tyrefem.reduced.training_tasks import FullRun
 from tyrefem.variants.execution import ProgressCallback, SweepSettings
-from tyrefem.variants.outcomes import Answered, NotReducible
+from tyrefem.variants.outcomes import Answered, Failed, NotReducible
 from tyrefem.variants.plan import Plan
 from tyrefem.variants.samples import changes_at
 from tyrefem.variants.schedulers import Here, Scheduler
@@ -53,7 +55,8 @@ class SurrogateCertificate(Brief):
 
     Parameters
     ----------
-    errors : answer -> largest difference to the validation runs. cases : number of validation runs.
+    errors : answer -> largest difference to the validation runs, of those in which both have a number: a time that is
+        not reached has none. cases : number of validation runs.
     worst : largest error of any temperature answer, K. tolerance : allowed error, K. trained_on : number of successful
         training runs and corrections. amended : number of corrections. own_mesh : where shapes share a mesh, the
         largest error of any temperature answer against runs on the variants' own meshes, K. meshes : largest difference
@@ -204,9 +207,7 @@ def surrogate(
         full_runs = training.run(
             places, min(plan.study.tolerance, max(tolerance, LEAST_RUN_TOLERANCE)), "certifying", with_answers=True
         )
-        reduced = reduced_answers(
-            model, [plan.study.replace(training.variant(place)) for place in places], plan.time_to
-        )
+        reduced = answers_of_changes(model, plan, [training.variant(place) for place in places])
         check_reducible(reduced)
         certificate = _certificate(training, reduced, full_runs, tolerance, known)
         if certificate.good:
@@ -222,6 +223,19 @@ def surrogate(
         f"after {certificate.amended} corrections the error in the validation runs is {certificate.worst:.3g} K;"
         f" allowed: {SAFETY:g} x {tolerance:g} K"
     )
+
+
+def answers_of_changes(model: ReducedModel, plan: Plan, variants: Sequence[Mapping[str, Any]]) -> list[ReducedOutcome]:
+    """The outcomes of variants, given by their changes; two numbers may fit alone but not together: `Failed`."""
+    studies: dict[int, StudyData] = {}
+    outcomes: dict[int, ReducedOutcome] = {}
+    for number, changes in enumerate(variants):
+        try:
+            studies[number] = plan.study.replace(changes)
+        except InputError as error:
+            outcomes[number] = Failed(str(error))
+    outcomes |= zip(studies, reduced_answers(model, list(studies.values()), plan.time_to), strict=True)
+    return [outcomes[number] for number in range(len(variants))]
 
 
 def _certificate(
@@ -259,7 +273,10 @@ def certified(
 ) -> SurrogateCertificate:
     """The certificate from pairs of answers (reduced model, full run); ``on_own_mesh``: on the variants' meshes."""
     names = [name for name, value in pairs[0][1].items() if isinstance(value, float)]
-    errors = {name: max(abs(a[name] - b[name]) for a, b in (*pairs, *on_own_mesh)) for name in names}
+    gaps = {name: [abs(a[name] - b[name]) for a, b in (*pairs, *on_own_mesh) if {name} <= a.keys() & b.keys()]
+            for name in names}  # fmt: skip
+    known = {name: list(filter(math.isfinite, each)) for name, each in gaps.items()}
+    errors = {name: max(each) for name, each in known.items() if each}
     worst = max(temperature_error(a, b) for a, b in pairs)
     own_mesh = max((temperature_error(a, b) for a, b in on_own_mesh), default=None)
     return SurrogateCertificate(errors, len(pairs), worst, tolerance, trained_on, amended, own_mesh)

@@ -145,8 +145,9 @@ class SpeedSearch:
     def record(self, outcome: Outcome, answer: str) -> None:
         """Use the outcome at the speed `next`."""
         speed = self.next
-        if isinstance(outcome, Failed):
-            self.failure, self.settled, self._speed = outcome.reason, True, math.nan
+        if isinstance(outcome, Failed) or answer not in outcome.answers:
+            reason = outcome.reason if isinstance(outcome, Failed) else f"no answer '{answer}'"
+            self.failure, self.settled, self._speed = reason, True, math.nan
             return
         value = float(outcome.answers[answer])
         if math.isnan(self.at_low):

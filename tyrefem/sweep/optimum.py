@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.brief import counted
+from tyrefem.errors import InputError, nearest
 from tyrefem.sweep.evaluation import Evaluator
 from tyrefem.sweep.part import InSentences
 from tyrefem.sweep.sweep import Sweep
@@ -125,8 +126,8 @@ def _variant(varied: Sequence[Varied], x: Array) -> dict[str, Any]:
 
 
 def objective(outcome: Outcome, card: OptimiseCard) -> float:
-    """The number to minimise; a time that is not reached is the longest, a failure is infinite."""
-    if isinstance(outcome, Failed):
+    """The number to minimise; a time that is not reached is the longest, a failure or no such answer is infinite."""
+    if isinstance(outcome, Failed) or card.answer not in outcome.answers:
         return math.inf
     value = float(outcome.answers[card.answer])
     value = NEVER if math.isnan(value) else value
@@ -141,7 +142,7 @@ def violation(outcome: Outcome, limits: Mapping[str, LimitCard], margins: Mappin
     >>> violation(Answered({"hottest_degC": 99.0}), {"hottest_degC": LimitCard(below=90.0)})
     0.1
     """
-    if isinstance(outcome, Failed):
+    if isinstance(outcome, Failed) or any(name not in outcome.answers for name in limits):
         return FAILED if limits else 0.0
     total = 0.0
     for name, limit in limits.items():
@@ -234,10 +235,13 @@ class Optimum(InSentences):
             sentences.append(f"There: {values}.")
         if isinstance(self.nominal, Answered):
             before = float(self.nominal.answers[self.answer])
-            gained = f"{self.full[self.answer] - before:+.3g} {difference_unit(self.answer)}".strip()
+            change = self.full[self.answer] - before
+            gained = f": {change:+.3g} {difference_unit(self.answer)}".rstrip() + " by the optimum"
+            # A time that is never reached has no difference.
+            gained = "" if math.isnan(change) else gained
             broken = violation(self.nominal, plan.limits) > 0
             breaks = " but breaks a limit" if broken else ""
-            sentences.append(f"The study as it is has {shown(self.answer, before)}{breaks}: {gained} by the optimum.")
+            sentences.append(f"The study as it is has {shown(self.answer, before)}{breaks}{gained}.")
         sentences.append(f"{tried}; {'every combination was tried' if self.exhaustive else self.ended}.")
         certificate = self.swept.certificate
         if certificate is not None:
@@ -291,6 +295,7 @@ def optimum(
     execution = (execution or Execution()).given(options)
     with Evaluator(plan, execution) as evaluate:
         nominal = Evaluator(plan, Execution(execution.scheduler))([{}])[0]
+        _check_there(nominal, (card.answer, *plan.limits))
         evaluate.train(card.runs)
         exhaustive = (
             all(number.values for number in plan.varied)
@@ -306,6 +311,13 @@ def optimum(
         evaluate.table_plan, evaluate.outcomes, evaluate.certificate, evaluate.why_full, resumed=evaluate.resumed
     )
     return Optimum(swept, card, best, full, nominal, exhaustive, ended)
+
+
+def _check_there(nominal: Outcome, names: Sequence[str]) -> None:
+    """Raise `InputError` for an answer that only a pattern allows, as ``lost_*_share`` does, and the study has not."""
+    for name in names if isinstance(nominal, Answered) else ():
+        if name not in nominal.answers:
+            raise InputError(f"no answer '{name}'{nearest(name, nominal.answers)}", field="optimise")
 
 
 def _four_digits(value: Any) -> str:

@@ -43,7 +43,7 @@ def undominated(values: Array) -> NDArray[np.bool_]:
 
 def default_aims(table: pd.DataFrame) -> dict[str, str]:
     """Temperature, rolling resistance and mass, all minimised, if they vary."""
-    feasible = table[table["feasible"]]
+    feasible = table[table["feasible"].astype(bool)]
     return {name: "min" for name in DEFAULT_AIMS if name in feasible and feasible[name].nunique() > 1}
 
 
@@ -58,10 +58,11 @@ def front(table: pd.DataFrame, aims: Mapping[str, str] | None = None) -> pd.Data
     ------
     InputError : the table does not have the answer, or an aim is neither "min" nor "max".
     """
-    feasible = table[table["feasible"]]
+    feasible = table[table["feasible"].astype(bool)]
     aims = aims or default_aims(table)
+    answered = bool((table["failure"] == "").any())
     for name, aim in aims.items():
-        if name not in table:
+        if name not in table and answered:
             raise InputError(f"no answer '{name}'{nearest(name, table.columns)}", field="pareto")
         if aim not in ("min", "max"):
             raise InputError(f"'{aim}' is not an aim; allowed: min, max", field=f"pareto.{name}")

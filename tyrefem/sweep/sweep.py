@@ -99,10 +99,13 @@ class Sweep(Brief):
     def parts(self, rows: int = ROWS_AT_ONCE) -> Iterator[pd.DataFrame]:
         """`table` in parts of so many rows, without all rows in memory; every part has the types of the whole table."""
         numbers, texts = self.packed.numbers, self.packed.other_than_floats
-        settings = self.overview().dtypes
+        overview, headings = self.overview(), self.plan.headings
+        settings, order = overview.dtypes, [name for name in overview if name in {"variant", *headings}]
         for first in range(0, len(numbers), rows):
             part = self._part(numbers[first : first + rows], self.answers)
-            types: dict[str, Any] = {name: settings[name] for name in self.plan.headings if name in settings}
+            # Variants of a list may leave out values: a part need not have all of them, nor in this order.
+            part = part.reindex(columns=[*order, *(name for name in part if name not in order)])
+            types: dict[str, Any] = {name: settings[name] for name in headings if name in settings}
             types |= {name: np.dtype(object if name in texts else float) for name in self.answers}
             shown: dict[Any, Any] = {name: kind for name, kind in types.items() if name in part}
             yield self._judged(part.astype(shown))
@@ -152,6 +155,9 @@ class Sweep(Brief):
         within = np.ones(len(table), dtype=bool)
         for name, limit in self.plan.limits.items():
             if name not in table:
+                if not self.answers:
+                    # All variants failed: none keeps a limit.
+                    return np.zeros(len(table), dtype=bool)
                 raise InputError(f"no answer '{name}'{nearest(name, self.answers)}", field="limits")
             values = table[name].to_numpy(dtype=float)
             if limit.below is not None:

@@ -123,7 +123,8 @@ def check_sensor_names(study: StudyData) -> None:
 def check_answer(name: str, study: StudyData, time_to: float | None = None) -> None:
     """Raise `InputError`, with the nearest name, if a study has no such answer."""
     known = answer_names(study, time_to)
-    if not any(fnmatch.fnmatchcase(name, pattern) for pattern in known):
+    # A sensor's name may have brackets, which a pattern would read as a choice of letters.
+    if name not in known and not any(fnmatch.fnmatchcase(name, pattern) for pattern in known):
         hint = "; it needs a temperature: 'time_to'" if name == TIME_TO else nearest(name, known)
         raise InputError(f"no answer '{name}'{hint}")
 
