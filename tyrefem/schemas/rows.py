@@ -51,7 +51,8 @@ ROWS: dict[str, Keys] = {
         **_PLACE,
     },
     "run.rolling_resistance": {
-        "phase": "text: The phase, at whose end it is, or before it rests or leaves the road.", "force_N": "number: Force, warm.",
+        "phase": "text: The phase, at whose end it is, or before it rests or leaves the road.",
+        "force_N": "number: Force, warm.",
         "coefficient": "number: Force over load.", "cold_force_N": "number: Force at the starting temperature.",
         "cold_coefficient": "number: The same over load.",
     },

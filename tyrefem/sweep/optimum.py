@@ -315,7 +315,9 @@ def optimum(
 
 def _check_there(nominal: Outcome, names: Sequence[str]) -> None:
     """Raise `InputError` for an answer that only a pattern allows, as ``lost_*_share`` does, and the study has not."""
-    for name in names if isinstance(nominal, Answered) else ():
+    if not isinstance(nominal, Answered):
+        return
+    for name in names:
         if name not in nominal.answers:
             raise InputError(f"no answer '{name}'{nearest(name, nominal.answers)}", field="optimise")
 
