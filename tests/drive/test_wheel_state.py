@@ -3,17 +3,25 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 
 import tyrefem as tf
+from tyrefem.errors import InputError
 from tyrefem.inputs.drive import Phase
-from tyrefem.inputs.wheel_state import wheel_state
+from tyrefem.inputs.loading import LoadCase
+from tyrefem.inputs.wheel_state import WheelState, wheel_state
+from tyrefem.materials.road_friction import RoadFriction
+from tyrefem.mechanics.rolling.rolled_footprint import SLOWEST, _speed
 from tyrefem.mechanics.solved_cases import changes_cycle
 
 pytestmark = pytest.mark.fast
 
+FLAT = {"coefficient": 1.0, "source": "test"}
 LOADED = {"load": "3 kN", "pressure": "2 bar", "duration": "1 s"}
 
 
@@ -49,3 +57,28 @@ def test_a_slip_speed_is_another_slip_at_another_speed() -> None:
     assert wheel_state(phase, 0.0).slip == pytest.approx(-0.1)
     assert wheel_state(phase, 1.0).slip == pytest.approx(-0.05)
     assert wheel_state(phase, 1.0).forward == pytest.approx(0.95)
+
+
+@pytest.mark.parametrize("ends", [("from", "to"), ("to", "from")])
+def test_a_wheel_that_is_locked_at_rest_is_refused(ends: tuple[str, str]) -> None:
+    """A ratio of 100 % where the vehicle stands divided by zero in the rolling tyre."""
+    rest, moving = ends
+    changes = {
+        "mechanics.strain": "fem", "boundaries.sliding": "rolling", "materials.tread": "rubber-tread-passenger",
+        "drive.speed": {rest: "0 mph", moving: "40 mph"}, "drive.slip_ratio": {rest: "100 %", moving: "0 %"},
+    }  # fmt: skip
+    with pytest.raises(InputError, match="a locked wheel does not roll") as caught:
+        tf.study("nasa-22x5.5-8pr", changes)
+    assert str(caught.value.field).endswith("slip_ratio")
+
+
+def test_friction_at_rest_is_that_of_slow_rolling() -> None:
+    """A law over the sliding speed was taken at 1 m/s where the vehicle stands, at 0.1 m/s just after."""
+    savkoor = {
+        "law": "savkoor", "coefficient": 1.2, "standstill": 0.8, "peak_speed": "1 m/s", "width": 0.5, "source": "test",
+    }  # fmt: skip
+    case = LoadCase(3e3, 0.0, 2e5, 0.28, wheel=WheelState(slip=-0.1, forward=0.9))
+    for law, speed in ((RoadFriction.check(savkoor), SLOWEST), (RoadFriction.check(FLAT), 1.0)):
+        study: Any = SimpleNamespace(materials={"tread": SimpleNamespace(friction=law)})
+        assert _speed(study, case) == speed
+        assert _speed(study, replace(case, speed=9.0)) == pytest.approx(10.0)

@@ -151,3 +151,9 @@ def test_cords_have_a_softening_of_their_own() -> None:
 def test_a_softening_without_numbers_is_refused(soft: dict[str, Any], message: str) -> None:
     with pytest.raises(InputError, match=message):
         card(softening=soft)
+
+
+def test_a_prony_series_far_below_its_reference_is_a_number() -> None:
+    """a_T of 1e200 had a square that is none; such rubber is glass and loses nothing."""
+    glass = Prony(1e6, (2e6,), (1e-3,), Shift(20.0, 110.0, 20.0))(10.0, np.array([-80.0, -200.0]))
+    assert glass == pytest.approx(0.0, abs=1e-9)

@@ -8,8 +8,10 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 
+import tyrefem as tf
 from tyrefem.errors import InputError
 from tyrefem.mechanics.footprint.harmonics import Harmonics
+from tyrefem.mechanics.rolling.critical_speed import critical_speed
 from tyrefem.mechanics.rolling.example_rings import ElasticRing
 from tyrefem.mechanics.rolling.standing_waves import SteadyWaves, steady_mass
 from tyrefem.mechanics.solid.spin import rolled
@@ -79,3 +81,8 @@ def test_steady_mass_is_definite_from_two_crests() -> None:
     for n in (2, 3, 7):
         values = np.linalg.eigvalsh(steady_mass(sp.identity(3), n).toarray())
         assert values == pytest.approx([(n - 1) ** 2, n**2, (n + 1) ** 2])
+
+
+def test_a_highest_harmonic_that_is_no_whole_number_is_refused() -> None:
+    with pytest.raises(InputError, match=r"must be a whole number from 2 to 60, not 7\.5"):
+        critical_speed(tf.study("nasa-22x5.5-8pr"), highest=7.5)  # type: ignore[arg-type]

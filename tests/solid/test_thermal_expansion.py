@@ -14,6 +14,7 @@ from tyrefem.mechanics.solid.body import Body
 from tyrefem.mechanics.solid.compounds import neo_hookean
 from tyrefem.mechanics.solid.cords import CordLayer
 from tyrefem.mechanics.solid.inflation import inflate
+from tyrefem.mechanics.solid.newton import equilibrium
 from tyrefem.mechanics.solid.parts import RegionMaterial
 from tyrefem.mechanics.solid.thermal import Expansion, expansions, thermal_equilibrium, warm
 
@@ -120,3 +121,13 @@ def test_a_studys_cards_give_the_expansion() -> None:
 def test_without_a_card_that_expands_a_temperature_is_refused() -> None:
     with pytest.raises(InputError, match="no material card gives 'expansion'"):
         inflate(tf.study("nasa-22x5.5-8pr"), 1e5, temperature=60.0)
+
+
+@pytest.mark.fast
+@pytest.mark.parametrize("rise", [0.0, 1e-9, 1e-6])
+def test_a_body_at_its_stress_free_temperature_keeps_its_balance(rise: float) -> None:
+    """Its heating has no forces but the rounding that its cold balance left, which no Newton step makes smaller."""
+    body = tube(2, neo_hookean(G, KAPPA))
+    cold = equilibrium(body, 1e4)
+    hot = thermal_equilibrium(warm(body, 25.0 + rise, EXPANSION), cold)
+    assert hot.displacement == pytest.approx(cold.displacement, rel=1e-5)

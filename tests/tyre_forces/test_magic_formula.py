@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tyrefem.errors import InputError
-from tyrefem.tyre_forces.fitting import ALIGNING, LATERAL, LONGITUDINAL, fit_magic_formula
+from tyrefem.tyre_forces.fitting import ALIGNING, LATERAL, LONGITUDINAL, MagicFormulaFit, fit_magic_formula
 from tyrefem.tyre_forces.magic_formula import ALL, MagicFormula
 from tyrefem.tyre_forces.points import ForcePoints
 from tyrefem.tyre_forces.property_file import TyreDimensions, read_tir, tir_text
@@ -215,6 +215,11 @@ def test_a_tir_file_has_every_section_once(fit):
         ("FITTYP = 61\nPCY1 = many\n", "line 2: 'many' is not a number"),
         ("FITTYP = 61\nNOMPRES = 2e5\nUNLOADED_RADIUS = 0.3\n", "is missing"),
         ("FITTYP = 61\nFNOMIN = 4e3\nNOMPRES = 2e5\nUNLOADED_RADIUS = 0.3\nLMUY = 0.8\n", "must be 1, not 0.8"),
+        ("FITTYP = 61\nFNOMIN = nan\n", "line 2: 'nan' is not a number"),
+        ("FITTYP = 61\nPDY1 = inf\n", "line 2: 'inf' is not a number"),
+        ("FITTYP = 61\nFNOMIN = 0\nNOMPRES = 2e5\nUNLOADED_RADIUS = 0.3\n", "wrong.tir: FNOMIN: must be positive"),
+        ("LENGTH = 'mm'\nFITTYP = 61\n", "line 1: must be 'meter', not 'mm'"),
+        ("ANGLE = 'degrees'\nFITTYP = 61\n", "line 1: must be 'radians', not 'degrees'"),
     ],
 )
 def test_a_wrong_tir_file_is_one_clear_error(text, message, tmp_path):
@@ -258,3 +263,14 @@ def test_a_simulator_has_the_load_at_the_deflection_of_the_tyre(fit, tmp_path, d
     assert nominal * (q_1 * x + q_2 * x**2) == pytest.approx(4000.0, rel=1e-4)
     tangent = nominal / radius * (q_1 + 2 * q_2 * x)
     assert tangent == pytest.approx(min(slope, 1.98 * 4000.0 / deflection), rel=1e-4)
+
+
+def test_a_slope_that_is_no_number_is_a_linear_spring(tmp_path):
+    """Large motion gives none where its search for the slope does not end."""
+    bare = MagicFormulaFit(TYRE, ForcePoints.of({"load": [4e3]}), (), {})
+    text = tir_text(bare, replace(PARTS, vertical_stiffness=np.nan, deflection=0.02), "spring")
+    entries = (line.partition("=") for line in text.splitlines())
+    read = {name.strip(): value.strip() for name, _, value in entries}
+    assert float(read["VERTICAL_STIFFNESS"]) == pytest.approx(4000.0 / 0.02)
+    assert float(read["Q_FZ1"]) == pytest.approx(0.31 / 0.02)
+    assert float(read["Q_FZ2"]) == pytest.approx(0.0, abs=1e-6)

@@ -6,6 +6,8 @@ import copy
 import math
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -16,8 +18,12 @@ from tyrefem import library
 from tyrefem.errors import InputError
 from tyrefem.geometry import load
 from tyrefem.geometry.builder import section_of
+from tyrefem.inputs.loading import LoadCase
 from tyrefem.materials.card import MaterialCard
 from tyrefem.materials.wear import Wear
+from tyrefem.mechanics.cycle_schedule import CycleSchedule
+from tyrefem.mechanics.rolling.friction_rings import FrictionRings
+from tyrefem.wear.drive_wear import drive_wear
 from tyrefem.wear.ring_wear import RingWear, tread_table
 from tyrefem.wear.worn_section import LEFT, WornFace, WornProfile, worn_section
 from tyrefem.wear.worn_shoulder import WornShoulder
@@ -96,6 +102,34 @@ def test_a_drive_wears_as_its_phases_by_their_distance() -> None:
     assert wear.volume_per_km == pytest.approx(
         5e-12 * float((wear.energy * wear.areas).sum()) * 1e3 / wear.travel, rel=0.01
     )
+
+
+@pytest.mark.fast
+def test_rolling_without_load_counts_for_the_distance(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Half of a drive under load wears half as much per kilometre; a ramp of the load loses no distance."""
+    phases = [
+        {"name": "rise", "load": {"from": "0 kN", "to": "4 kN"}, "duration": "100 s"},
+        {"name": "lifted", "load": "0 kN", "duration": "300 s"},
+    ]
+    study = tf.study("nasa-22x5.5-8pr", {**DRIVE, "drive.phases": phases})
+    even, one = rings(50.0, count=5), np.ones(5)
+    friction = FrictionRings(even.places, even.widths, 2.0 * one, 0.1 * one, 0.1, 0.02, 1.0, 0.3)
+    under_load: Any = SimpleNamespace(friction=friction, footprint=object())
+    free: Any = SimpleNamespace(friction=None, footprint=None)
+    case = LoadCase(4e3, 0.01, 5e5, 0.28)
+    schedule = CycleSchedule(
+        study.card.drive, ((0.0, 1.0), (0.0,)), ((case, case), (case,)), ((free, under_load), (free,))
+    )
+    monkeypatch.setattr("tyrefem.wear.drive_wear._schedule", lambda study: schedule)
+    wear = drive_wear(study)
+    way = study.card.drive.phases[0].speed.start * 400.0
+    assert wear.distance == pytest.approx(way)
+    assert [wear.by_phase[name][0] for name in ("rise", "lifted")] == pytest.approx([way / 4, way * 3 / 4])
+    assert [wear.by_phase[name][1] for name in ("rise", "lifted")] == pytest.approx([10.0 * way / 8, 0.0])
+    (state,) = wear.states
+    assert wear.mean == pytest.approx(state.mean / 8)
+    assert wear.travel == pytest.approx(state.travel)
+    assert wear.energy == pytest.approx(state.energy / 8)
 
 
 @pytest.mark.fast

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Protocol
 
 from tyrefem.errors import InputError
 from tyrefem.inputs.drive import LOOKS, Phase
-from tyrefem.inputs.motion import motion_in
+from tyrefem.inputs.motion import ROUNDING, motion_in, slip_ratio_in
 from tyrefem.inputs.study_card import StudyCard
 
 if TYPE_CHECKING:
@@ -112,7 +112,9 @@ def _check_phase(study: DrivenStudy, phase: Phase) -> None:
         return
     for fraction in LOOKS:
         motion = motion_in(phase, fraction)
-        if motion.speed > 0 and not motion.turns:
+        # A stated ratio also holds at rest, where nothing turns.
+        locked = not motion.turns if motion.speed > 0 else slip_ratio_in(phase, fraction) >= 1 - ROUNDING
+        if locked:
             key = "slip_speed" if phase.slip_ratio is None else "slip_ratio"
             message = "a locked wheel does not roll: less than 1, or boundaries.sliding = 'constant' or 'brush'"
             raise InputError(message, field=f"{place}.{key}")

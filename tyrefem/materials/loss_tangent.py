@@ -12,6 +12,8 @@ from numpy.typing import NDArray
 from tyrefem.errors import InputError
 
 Array = NDArray[np.float64]
+#: Largest x of a Prony series: its square is still a number.
+LARGEST = 1e150
 
 
 class Loss(Protocol):
@@ -35,7 +37,7 @@ class Shift:
 
     def __call__(self, temperature: Array) -> Array:
         above = np.maximum(np.asarray(temperature, dtype=float) - self.reference, 10.0 - self.c2)
-        return np.asarray(10 ** (-self.c1 * above / (self.c2 + above)))
+        return np.asarray(10 ** np.minimum(-self.c1 * above / (self.c2 + above), 300.0))
 
 
 @dataclass(frozen=True)
@@ -131,6 +133,6 @@ class Prony:
     def __call__(self, frequency: float, temperature: Array) -> Array:
         temperature = np.asarray(temperature, dtype=float)
         reduced = 2 * np.pi * frequency * (self.shift(temperature) if self.shift else np.ones_like(temperature))
-        x = np.multiply.outer(reduced, np.asarray(self.times))
+        x = np.minimum(np.multiply.outer(reduced, np.asarray(self.times)), LARGEST)
         storage = self.equilibrium + (np.asarray(self.moduli) * x**2 / (1 + x**2)).sum(axis=-1)
         return np.asarray((np.asarray(self.moduli) * x / (1 + x**2)).sum(axis=-1) / storage)

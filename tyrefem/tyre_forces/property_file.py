@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -32,6 +33,12 @@ COMBINED: dict[str, dict[str, float]] = {
 }  # fmt: skip
 #: Largest slope of the load over load / deflection; at 2 the root of simulators is 0, and by rounding no number.
 STEEPEST = 1.98
+#: Nominal values of a file, and all numbers that are read of it.
+NOMINAL = ("FNOMIN", "NOMPRES", "UNLOADED_RADIUS")
+READ = {*ALL, *NOMINAL, *OF_PURE_SLIP, "FITTYP"}
+#: Units of a file that is read; a file without them is in these.
+UNITS = {"LENGTH": ("meter", "metre", "m"), "FORCE": ("newton", "n"), "ANGLE": ("radians", "radian", "rad"),
+         "PRESSURE": ("pascal", "pa")}  # fmt: skip
 #: Width of names.
 WIDTH = 24
 
@@ -107,13 +114,14 @@ def _spring(formula: MagicFormula, dimensions: TyreDimensions) -> dict[str, floa
 
     Slope and deflection D_0 under the nominal load give q_1 and q_2: with x_0 = D_0 / R_0 and c = C_z0 R_0 / F_z0, the
     slope in x, q_1 = 2 / x_0 - c and q_2 = (c - 1 / x_0) / x_0. Simulators read C_z0 and q_2, and take
-    q_1 = sqrt(c² - 4 q_2): a slope above `STEEPEST` F_z0 / D_0 is written as that, for q_1 > 0.
+    q_1 = sqrt(c² - 4 q_2): a slope above `STEEPEST` F_z0 / D_0 is written as that, for q_1 > 0. A slope that large
+    motion could not compute, no number, is written as F_z0 / D_0.
     """
     stiffness = dimensions.vertical_stiffness
     if dimensions.deflection is None:
         return {"VERTICAL_STIFFNESS": stiffness}
     secant = formula.nominal_load / dimensions.deflection
-    stiffness = min(stiffness, STEEPEST * secant)
+    stiffness = min(stiffness, STEEPEST * secant) if math.isfinite(stiffness) else secant
     slope, x = stiffness * formula.radius / formula.nominal_load, dimensions.deflection / formula.radius
     return {"VERTICAL_STIFFNESS": stiffness, "Q_FZ1": 2.0 / x - slope, "Q_FZ2": (slope - 1.0 / x) / x}
 
@@ -131,7 +139,7 @@ def read_tir(path: Path) -> MagicFormula:
     Raises
     ------
     InputError : no such file; another FITTYP; a number that cannot be read; nominal load, pressure or radius missing; a
-        scaling factor of pure slip that is not 1.
+        scaling factor of pure slip that is not 1; units that are not SI and radians.
     """
     try:
         lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
@@ -142,17 +150,24 @@ def read_tir(path: Path) -> MagicFormula:
         name, equals, rest = line.split("$")[0].split("!")[0].partition("=")
         name, word = name.strip().upper(), rest.strip()
         if not equals or word.startswith("'"):
+            unit = word.strip("' ").lower()
+            if equals and name in UNITS and unit not in UNITS[name]:
+                message = f"line {number}: must be '{UNITS[name][0]}', not '{unit}': numbers are read in SI and radians"
+                raise InputError(message, file=path, field=name)
             continue
         try:
             values[name] = float(word)
         except ValueError:
-            if name in ALL:
-                raise InputError(f"line {number}: '{word}' is not a number", file=path, field=name) from None
+            values[name] = math.nan
+        if name in READ and not math.isfinite(values[name]):
+            raise InputError(f"line {number}: '{word}' is not a number", file=path, field=name)
     if values.get("FITTYP") != 61:
         raise InputError(f"must be 61, not {values.get('FITTYP', 'missing')}", file=path, field="FITTYP")
-    for name in ("FNOMIN", "NOMPRES", "UNLOADED_RADIUS"):
+    for name in NOMINAL:
         if name not in values:
             raise InputError("is missing", file=path, field=name)
+        if not values[name] > 0:
+            raise InputError(f"must be positive, not {values[name]:g}", file=path, field=name)
     for name in OF_PURE_SLIP:
         if values.get(name, 1.0) != 1.0:
             message = f"must be 1, not {values[name]:g}: the formula has no scaling factors"

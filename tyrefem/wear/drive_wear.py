@@ -29,11 +29,13 @@ INTERVALS = 32
 class DriveWear(RingWear):
     """Mean wear of the rings over a drive, by distance: sum of share_i times depth per km of state i.
 
-    ``power`` is the mean over the time, ``travel`` that of a revolution, ``spin`` such that ``travel`` fits the speed.
+    Rolling without load wears nothing; its distance counts. ``power`` is the mean over the time, ``travel`` that of a
+    revolution under load, ``spin`` such that ``travel`` fits the speed.
 
     Parameters
     ----------
-    states : wear in each solved state. shares : (states,) of the drive's distance. distance : m, of the drive.
+    states : wear in each solved state. shares : (states,) of the drive's distance, less than 1 in all where it also
+        rolls without load. distance : m, of the drive.
     by_phase : name -> (distance, m; friction work, J; mean depth per km, m).
     """
 
@@ -67,9 +69,9 @@ def drive_wear(study: StudyData) -> DriveWear:
         message = "the wear of a drive needs boundaries.sliding = 'rolling'"
         raise InputError(message, field="boundaries.sliding", file=study.file)
     schedule = _schedule(study)
-    distances = _distances(schedule)
-    total = sum(distances.values())
-    if not total > 0:
+    distances, unloaded = _distances(schedule)
+    loaded = sum(distances.values())
+    if not loaded > 0:
         raise InputError("the tyre never rolls under load: no wear", field="drive", file=study.file)
     rings = {place: _rings(schedule, place) for place in distances}
     rubber = rubber_share(study)
@@ -77,35 +79,42 @@ def drive_wear(study: StudyData) -> DriveWear:
     by_phase = {}
     for number, phase in enumerate(study.card.drive.phases):
         ours = {place: distance for place, distance in distances.items() if place[0] == number}
-        way = sum(ours.values())
+        way = sum(ours.values()) + unloaded.get(number, 0.0)
         if way > 0:
             work = sum(distance * rings[place].total for place, distance in ours.items())
             depth = sum(distance * states[place].mean for place, distance in ours.items()) / way
             by_phase[phase.name] = (way, work, depth)
+    total = loaded + sum(unloaded.values())
     shares = np.array([distance / total for distance in distances.values()])
     first = next(iter(states.values()))
-    turns = sum(share / state.travel for share, state in zip(shares, states.values(), strict=True))
+    travel = loaded / sum(distance / states[place].travel for place, distance in distances.items())
     work_per_metre = np.sum(
         [share * friction.work for share, friction in zip(shares, rings.values(), strict=True)], axis=0
     )
     speed = total / study.card.drive.end
     return DriveWear(
-        first.places, first.widths, work_per_metre * speed, 2 * np.pi * speed * turns, 1 / turns, table,
+        first.places, first.widths, work_per_metre * speed, 2 * np.pi * speed / travel, travel, table,
         rubber, tuple(states.values()), shares, total, by_phase,
     )  # fmt: skip
 
 
-def _distances(schedule: CycleSchedule) -> dict[tuple[int, int], float]:
-    """(phase, knot) of a state with friction -> m that the wheel travels in it; shared between two in a ramp."""
+def _distances(schedule: CycleSchedule) -> tuple[dict[tuple[int, int], float], dict[int, float]]:
+    """(phase, knot) of a state with friction -> m that the wheel travels in it, shared between two in a ramp; phase ->
+    m that it rolls without load."""
     distances: dict[tuple[int, int], float] = {}
+    unloaded: dict[int, float] = {}
     for start, phase in zip(schedule.drive.starts, schedule.drive.phases, strict=True):
         step = phase.duration / INTERVALS
         for time in start + step * (np.arange(INTERVALS) + 0.5):
             way = schedule.motion(float(time)).speed * step
             for number, knot, weight in schedule.weights(float(time)):
-                if way * weight > 0 and _friction(schedule, (number, knot)) is not None:
+                if not way * weight > 0:
+                    continue
+                if _friction(schedule, (number, knot)) is not None:
                     distances[number, knot] = distances.get((number, knot), 0.0) + way * weight
-    return distances
+                elif getattr(schedule.cycles[number][knot], "footprint", None) is None:
+                    unloaded[number] = unloaded.get(number, 0.0) + way * weight
+    return distances, unloaded
 
 
 def _friction(schedule: CycleSchedule, place: tuple[int, int]) -> FrictionRings | None:

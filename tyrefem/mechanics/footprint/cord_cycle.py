@@ -41,8 +41,8 @@ class CordCycle:
 def cord_cycles(tyre: Inflation, cycle: StrainHarmonics, count: int = 181) -> tuple[CordCycle, ...]:
     """The cords of every region: inflated tension + E A lambda a . e a, with the cords' deformed direction a.
 
-    E A is smaller where the inflated cord is compressed, as in the tangent of the footprint. In large motion the
-    tension follows the cords' law at the stretch lambda sqrt(1 + 2 a . E a), with Green's strain E.
+    E A is smaller where the inflated cord is compressed, as in the tangent of the footprint: W''/(v_c E) of it. In
+    large motion the tension follows the cords' law at the stretch lambda sqrt(1 + 2 a . E a), with Green's strain E.
 
     Parameters
     ----------
@@ -61,15 +61,16 @@ def _greatest(tyre: Inflation, cycle: StrainHarmonics, region: str, layer: CordL
     known = layer.cord_stiffness is not None
     stretch = layer.stretch(deformation)
     inflated = layer.tension(deformation) if known else layer.stress_in_layer(deformation)
-    stiffness = np.asarray(layer.cord_stiffness if known else layer.stiffness)
+    per_stress = np.asarray(layer.cord_stiffness / layer.stiffness if layer.cord_stiffness is not None else 1.0)
     carried = (np.einsum("ij...,j...->i...", deformation, direction) / stretch for direction in layer.directions)
     strains = [cycle.along(direction, angles, members) for direction in carried]
     if cycle.footprint.balanced is None:
-        slope = (stiffness * np.where(stretch >= 1, 1.0, layer.compression) * stretch)[..., None]
+        slope = (per_stress * layer.slopes(stretch)[1] * stretch)[..., None]
         halves = [inflated[..., None] + slope * strain for strain in strains]
     else:
-        per_stress = np.asarray(stiffness / layer.stiffness)[..., None]
-        halves = [per_stress * layer.slope(stretch[..., None] * np.sqrt(1 + 2 * strain)) for strain in strains]
+        halves = [
+            per_stress[..., None] * layer.slope(stretch[..., None] * np.sqrt(1 + 2 * strain)) for strain in strains
+        ]
     most = np.maximum(halves[0].max(axis=-1), halves[1].max(axis=-1))
     element, point = (int(i) for i in np.unravel_index(int(most.argmax()), most.shape))
     r, z = tyre.body.rings.points[:, members[element], point]

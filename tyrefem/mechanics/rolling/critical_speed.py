@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from numbers import Integral
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -154,7 +155,7 @@ def critical_speed(
     pressure = study.card.drive.phases[0].pressure.start if pressure is None else pressure
     if not pressure > 0:
         raise InputError(f"must be more than 0 Pa, not {pressure:g} Pa", field="pressure")
-    if highest is not None and not 2 <= highest <= HIGHEST:
+    if highest is not None and not (isinstance(highest, Integral) and 2 <= highest <= HIGHEST):
         raise InputError(f"must be a whole number from 2 to {HIGHEST}, not {highest}", field="highest")
     if temperature is not None:
         if not any(card.softens for card in study.materials.values()):

@@ -209,10 +209,13 @@ def _given(case: LoadCase) -> tuple[str, float]:
     return ("deflection", case.deflection) if case.by_deflection else ("load", case.load)
 
 
-def _speed(case: LoadCase) -> float:
+def _speed(study: StudyData, case: LoadCase) -> float:
     """Speed of the wheel's centre, m/s; 1 where nothing depends on it."""
     assert case.wheel is not None
-    return max(case.speed / case.wheel.forward, SLOWEST) if case.speed else 1.0
+    laws = (card.friction for card in study.materials.values())
+    if not case.speed and not any(law is not None and law.depends_on_speed for law in laws):
+        return 1.0
+    return max(case.speed / case.wheel.forward, SLOWEST)
 
 
 def _warm(study: StudyData, case: LoadCase) -> float | None:
@@ -226,7 +229,8 @@ def _warm(study: StudyData, case: LoadCase) -> float | None:
 
 def _tyre_key(study: StudyData, case: LoadCase) -> Hashable:
     frictions = {region: card.friction for region, card in study.materials.items()}
-    key: tuple[Hashable, ...] = (inputs(study), key_of(frictions), case.pressure, case.drum_diameter, _speed(case))
+    speed = _speed(study, case)
+    key: tuple[Hashable, ...] = (inputs(study), key_of(frictions), case.pressure, case.drum_diameter, speed)
     if study.card.mechanics.rolling:
         # Loss is that of the regions' temperatures.
         warmth = (study.card.drive.initial, tuple((study.parts.temperatures or {}).items()))
@@ -242,7 +246,7 @@ def _wheel(study: StudyData, case: LoadCase) -> WheelOnRoad:
     wanted: dict[str, Any] = {name: given}
 
     def pressed() -> WheelOnRoad:
-        road = {"pressure": case.pressure, "drum_diameter": case.drum_diameter, "speed": _speed(case)}
+        road = {"pressure": case.pressure, "drum_diameter": case.drum_diameter, "speed": _speed(study, case)}
         return wheel_on_road(study, motion=study.card.mechanics.motion, **wanted, **road)
 
     tyre = _TYRES.get(_tyre_key(study, case), pressed)

@@ -189,7 +189,7 @@ def thermal_equilibrium(
 ) -> Equilibrium:
     """A warm body's equilibrium: heated in steps from its ``cold`` equilibrium (default: no pressure), each by Newton.
 
-    ``tolerance`` : unbalanced forces over those of one step's heating.
+    ``tolerance`` : unbalanced forces over those of one step's heating, or of the pressure where these are larger.
 
     Raises
     ------
@@ -218,13 +218,17 @@ def thermal_equilibrium(
 def _newton(
     body: Body, start: Array, pressure: float, tolerance: float, iterations: int
 ) -> tuple[Array, tuple[float, ...]]:
-    """Displacement, and the unbalanced forces over the first ones."""
+    """Displacement, and the unbalanced forces over the first ones, or over those of the pressure where larger.
+
+    A body at its stress-free temperature has no first ones but the rounding that its cold equilibrium left.
+    """
     from scipy.sparse.linalg import splu
 
     displacement, free = start, body.free
     residual = body.residual(displacement, pressure)[free]
-    first = float(np.linalg.norm(residual))
-    history = [1.0 if first else 0.0]
+    left = float(np.linalg.norm(residual))
+    first = max(left, abs(pressure) * float(np.linalg.norm(body.load(displacement)[free])))
+    history = [left / first if first else 0.0]
     while history[-1] > tolerance and len(history) <= iterations:
         step = np.zeros(2 * body.rings.n_nodes)
         step[free] = splu(body.stiffness(displacement, pressure)[free][:, free].tocsc()).solve(-residual)
