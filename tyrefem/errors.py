@@ -29,6 +29,8 @@ class InputError(ValueError):
 
     >>> print(InputError("must be positive", field="drive.speed", file="study.toml"))
     study.toml: drive.speed: must be positive
+    >>> MissingLibraryError("needs gmsh").within(field="mesh.mesher")
+    MissingLibraryError('mesh.mesher: needs gmsh')
     """
 
     def __init__(self, message: str, *, field: str | None = None, file: str | Path | None = None) -> None:
@@ -36,9 +38,12 @@ class InputError(ValueError):
         super().__init__(": ".join(str(part) for part in (file, field, message) if part))
 
     def within(self, *, field: str | None = None, file: str | Path | None = None) -> InputError:
-        """The same error, with the names of an enclosing field and file."""
+        """The same error, of the same type, with the names of an enclosing field and file."""
         joined = ".".join(part for part in (field, self.field) if part)
-        return InputError(self.message, field=joined or None, file=self.file or file)
+        placed = type(self).__new__(type(self))
+        placed.__dict__ |= self.__dict__
+        InputError.__init__(placed, self.message, field=joined or None, file=self.file or file)
+        return placed
 
 
 class OutputError(InputError):

@@ -133,8 +133,6 @@ def split(text: str, path: Path, rename: Mapping[str, str] | None = None) -> Lin
         raise NoTableError("has only comments, no heading and no readings", file=path)
     try:
         position, delimiter = _heading(content, path, rename)
-    except NoTableError:
-        raise
     except InputError as error:
         raise error.within(file=path) from None
     number, line = content[position]

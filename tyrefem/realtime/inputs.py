@@ -196,11 +196,7 @@ def _kept(study: StudyData) -> dict[str, Any]:
     drive = study.data["drive"]
     phases = drive.get("phases", [{}])
     check_motion(study)
-    kept = {**{key: drive[key] for key in KEPT if key in drive}}
-    for phase in phases:
-        for key in KEPT:
-            if key in phase and kept.setdefault(key, phase[key]) != phase[key]:
-                raise InputError(f"'{key}' must be the same in every phase", field="drive.phases")
+    kept = {key: given[key] for given in (drive, *phases) for key in KEPT if key in given}
     for key in KEPT:
         values = [getattr(phase, key) for phase in study.card.drive.phases]
         if any(value != values[0] for value in values):
