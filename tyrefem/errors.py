@@ -41,7 +41,7 @@ class InputError(ValueError):
         """The same error, of the same type, with the names of an enclosing field and file."""
         joined = ".".join(part for part in (field, self.field) if part)
         placed = type(self).__new__(type(self))
-        placed.__dict__ |= self.__dict__
+        placed.__setstate__(vars(self))
         InputError.__init__(placed, self.message, field=joined or None, file=self.file or file)
         return placed
 
