@@ -15,6 +15,7 @@ from tyrefem.heating_test.layer_study import _misfits
 from tyrefem.heating_test.parameters import at
 from tyrefem.heating_test.readings import matched
 from tyrefem.heating_test.twin import Twin
+from tyrefem.reports.rig_figures import pictures
 from tyrefem.rig import Identification, RigCard, identify, load, simulate
 
 COARSE, MIDDLE = Fineness(2, 5, 2), Fineness(3, 7, 3)
@@ -175,3 +176,10 @@ def test_a_short_test_has_no_misfit_after_its_transients() -> None:
     early, late = _misfits(SimpleNamespace(card=card, fit=SimpleNamespace(blocks=[block])))
     assert early == 1.0
     assert np.isnan(late)
+
+
+def test_runs_of_like_names_have_each_a_picture() -> None:
+    card = rig(heating=60.0, cooling=30.0)
+    run = card.runs["high"]
+    twice = of_itself(card.model_copy(update={"runs": {"high 1": run, "high-1": run}}), linear=False)
+    assert {"residuals-high-1.png", "residuals-high-1-2.png"} < set(pictures(twice))

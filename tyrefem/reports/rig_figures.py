@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -27,6 +26,7 @@ from tyrefem.reports.figures.style import (
     tidy,
     title,
 )
+from tyrefem.reports.words import history_files
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -43,10 +43,9 @@ Array = NDArray[Any]
 
 def pictures(identification: IdentificationData) -> dict[str, bytes]:
     """File name -> PNG: ``residuals-RUN``, ``intervals``, ``correlation``."""
-    drawn = {}
-    for test in identification.tests:
-        name = re.sub(r"[^\w.-]+", "-", test.name).strip("-.") or "run"
-        drawn[f"residuals-{name}.png"] = png(residuals(identification, test.name))
+    runs = [test.name for test in identification.tests]
+    files = zip(history_files(runs, "residuals"), runs, strict=True)
+    drawn = {file: png(residuals(identification, run)) for file, run in files}
     drawn["intervals.png"] = png(intervals(identification))
     drawn["correlation.png"] = png(correlation(identification))
     return drawn

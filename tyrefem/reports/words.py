@@ -35,11 +35,30 @@ def number(value: float, significant: int = 4) -> str:
     return f"{float(text):,.0f}".replace(",", " ") if size >= 4 else text
 
 
-#: Bytes of a run's name in the name of a file; file systems allow 255 for the whole.
+#: Bytes of a name in the name of a file; file systems allow 255 for the whole.
 LONGEST_NAME = 200
 
 
-def history_files(runs: Iterable[object]) -> list[str]:
+def file_stem(name: object, instead: str) -> str:
+    """A name for a file: letters, digits, ``_``, ``.`` and ``-`` of it stay; ``instead`` where nothing is left.
+
+    >>> file_stem("taxi/1", "run"), file_stem("...", "run")
+    ('taxi-1', 'run')
+    """
+    plain = re.sub(r"[^\w.-]+", "-", str(name)).strip("-.")
+    return plain.encode()[:LONGEST_NAME].decode(errors="ignore") or instead
+
+
+def unlike(stem: str, taken: set[str]) -> str:
+    """The stem, or with a number where it is in ``taken`` in small or capital letters; it is taken from then on."""
+    free, again = stem, 2
+    while free.casefold() in taken:
+        free, again = f"{stem}-{again}", again + 1
+    taken.add(free.casefold())
+    return free
+
+
+def history_files(runs: Iterable[object], kind: str = "histories") -> list[str]:
     """Names of the pictures of runs: letters, digits, ``_``, ``.`` and ``-`` of the run's name stay.
 
     All are different, also where small and capital letters are the same, and short enough for a file system.
@@ -47,16 +66,8 @@ def history_files(runs: Iterable[object]) -> list[str]:
     >>> history_files(["taxi 1", "taxi/1", "A", "a"])
     ['histories-taxi-1.png', 'histories-taxi-1-2.png', 'histories-A.png', 'histories-a-2.png']
     """
-    known: set[str] = set()
-    files: list[str] = []
-    for run in runs:
-        name = re.sub(r"[^\w.-]+", "-", str(run)).strip("-.").encode()[:LONGEST_NAME].decode(errors="ignore") or "run"
-        file, again = f"histories-{name}.png", 2
-        while file.casefold() in known:
-            file, again = f"histories-{name}-{again}.png", again + 1
-        files.append(file)
-        known.add(file.casefold())
-    return files
+    taken: set[str] = set()
+    return [f"{kind}-{unlike(file_stem(run, 'run'), taken)}.png" for run in runs]
 
 
 def seconds(value: float) -> str:
