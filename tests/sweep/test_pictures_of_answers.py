@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import base64
 import itertools
+import re
 import subprocess
 import sys
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -80,3 +83,21 @@ def test_the_page_knows_the_pictures_of_every_answer() -> None:
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.split() == ["Envelope", "Indices", "Optimum", "ParetoFront", "Responses", "Tornado"]
+
+
+def test_every_picture_has_its_own_file_and_every_name_its_signs(tmp_path: Path) -> None:
+    """Sensors whose names differ before a dot, in a slash or in capitals; dollar signs are no formula."""
+    depths = {"T1.5": "2 mm", "T2.5": "8 mm", "in/out": "3 mm", "in-out": "5 mm", r"$\bad$": "6 mm", "TC Left": "7 mm"}
+    sensors = {name: {"s": "0 mm", "depth": depth} for name, depth in depths.items()}
+    study = tf.study("nasa-22x5.5-8pr", {"mesh.size": "14 mm", "drive.duration": "20 s", "sensors": sensors})
+    answers = [f"{name}_degC" for name in depths]
+    design = study.sweep({"drive.speed": ["10 mph", "20 mph"]}, answers=answers, reduced="never")
+    design.save(tmp_path)
+    files = sorted(file.name for file in (tmp_path / "pictures").iterdir() if file.is_file())
+    assert len([file for file in files if file.startswith("curves-")]) == len(answers)
+    assert {"curves-T1.5_degC-speed.png", "curves-T2.5_degC-speed.png"} < set(files)
+    page = (tmp_path / "sweep.html").read_text(encoding="utf-8")
+    shown = [base64.b64decode(data) for data in re.findall(r"data:image/png;base64,([^\"]+)", page)]
+    assert sorted(shown) == sorted((tmp_path / "pictures" / file).read_bytes() for file in files)
+    drawn = curves(design.swept, "drive.speed [mph]", "TC Left_degC")
+    assert drawn.texts[0].get_text() == "TC Left over speed"

@@ -64,3 +64,15 @@ def test_the_command_refuses_an_unknown_variant_before_any_run(
     assert main(sweep) == 2
     assert capfd.readouterr().err == "tyrefem: --vtk: no variant '7'; allowed: 1, 2, front\n"
     assert not out.exists()
+
+
+def test_variants_of_like_names_have_each_a_folder(tmp_path: Path) -> None:
+    """The folder of a variant is the same whichever variants are chosen."""
+    (tmp_path / "list.csv").write_text("name,drive.speed\nA+1,10 mph\nA-1,20 mph\n", encoding="utf-8")
+    design = tf.study("nasa-22x5.5-8pr", QUICK).sweep(sample="list", cases=str(tmp_path / "list.csv"), reduced="never")
+    both = design.to_vtk(tmp_path, ["A+1", "A-1"])
+    assert [path.parent.name for path in both.values()] == ["A-1", "A-1-2"]
+    titles = [path.with_suffix(".py").read_text(encoding="utf-8") for path in both.values()]
+    assert "variant A+1" in titles[0]
+    assert "variant A-1" in titles[1]
+    assert design.to_vtk(tmp_path / "one", ["A-1"])["A-1"].parent.name == "A-1-2"

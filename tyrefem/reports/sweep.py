@@ -24,7 +24,7 @@ from tyrefem.reports.explore_link import explore_link
 from tyrefem.reports.figures.style import png
 from tyrefem.reports.sweep_figures import figures
 from tyrefem.reports.template import rendered
-from tyrefem.reports.words import number
+from tyrefem.reports.words import file_stem, number, unlike
 from tyrefem.sweep.pareto import DEFAULT_AIMS
 from tyrefem.sweep.sweep import Sweep
 from tyrefem.variants.answer_units import difference_unit, name_of, shown
@@ -55,7 +55,8 @@ COLUMNS = (
 def write_page(design: DesignData, summary: Mapping[str, Any], folder: Path) -> list[str]:
     """Write ``sweep.html``, and the pictures as PNG files in ``pictures``; return the names of these files."""
     swept = design.swept or (design.optimum.swept if design.optimum is not None else None)
-    parts = [_part(part, folder) for part in design.parts]
+    taken: set[str] = set()
+    parts = [_part(part, folder, taken) for part in design.parts]
     page = rendered(
         "sweep.html",
         title=summary["title"],
@@ -75,12 +76,12 @@ def write_page(design: DesignData, summary: Mapping[str, Any], folder: Path) -> 
     return [PAGE, *(picture["file"] for part in parts for picture in part["pictures"])]
 
 
-def _part(part: DesignPart, folder: Path) -> dict[str, Any]:
-    """Heading, words, pictures and table of an answer."""
+def _part(part: DesignPart, folder: Path, taken: set[str]) -> dict[str, Any]:
+    """Heading, words, pictures and table of an answer; ``taken``: names of pictures so far."""
     drawn = []
     for name, caption, picture in figures(part):
         content = png(picture)
-        file = f"pictures/{name}.png"
+        file = f"pictures/{unlike(file_stem(name, part.name), taken)}.png"
         with atomic_path(folder / file) as temporary:
             temporary.write_bytes(content)
         drawn.append({"file": file, "caption": caption, "data": base64.b64encode(content).decode("ascii")})

@@ -80,7 +80,7 @@ def tornado(tornado_data: Tornado, answer: str) -> Figure:
     axes.axvline(0, color="black", lw=0.8)
     axes.set_yticks(places, numbers, fontsize=FONT - 1)
     axes.locator_params(axis="x", nbins=6)
-    axes.set_xlabel(f"change of the {name_of(answer)} [{difference_unit(answer) or '-'}]", fontsize=FONT)
+    axes.set_xlabel(plain(f"change of the {name_of(answer)} [{difference_unit(answer) or '-'}]"), fontsize=FONT)
     axes.legend(fontsize=FONT - 1, frameon=False, loc="upper center", bbox_to_anchor=(0.5, -0.45 / high), ncols=2)
     tidy(axes)
     more = f"; the {len(table)} widest of {len(rows)}" if len(rows) > len(table) else ""

@@ -25,7 +25,7 @@ from tyrefem.reports.figures.style import (  # fmt: skip
     title,
 )
 from tyrefem.sweep.pareto import ParetoFront
-from tyrefem.sweep.responses import Responses, finished, judged, main_effects, numeric, short
+from tyrefem.sweep.responses import Responses, capital, finished, judged, main_effects, numeric, short
 from tyrefem.variants.answer_units import name_of, unit_of
 
 if TYPE_CHECKING:
@@ -96,14 +96,14 @@ def _shades(sweep: Sweep) -> str:
     return "; darker hexagons: more variants" if len(finished(sweep)) > MOST_POINTS else ""
 
 
-def _file(*parts: str) -> str:
-    return "-".join(short(part).replace(".", "-").replace(" ", "-") for part in parts)
+def _file(kind: str, answer: str, *numbers: str) -> str:
+    return "-".join([kind, answer, *(short(number).replace(".", "-") for number in numbers)])
 
 
 def label(answer: str) -> str:
     """Axis label of an answer."""
     unit = unit_of(answer)
-    return f"{name_of(answer)} [{unit}]" if unit else name_of(answer)
+    return plain(f"{name_of(answer)} [{unit}]" if unit else name_of(answer))
 
 
 def axis(heading: str) -> str:
@@ -142,7 +142,7 @@ def curves(sweep: Sweep, x: str, answer: str) -> Figure:
     axes.set_xlabel(axis(x), fontsize=FONT)
     axes.set_ylabel(label(answer), fontsize=FONT)
     tidy(axes)
-    title(drawn, f"{name_of(answer).capitalize()} over {short(x)}", sweep.plan.study.name)
+    title(drawn, f"{capital(name_of(answer))} over {short(x)}", sweep.plan.study.name)
     return drawn
 
 
@@ -227,7 +227,7 @@ def response_map(sweep: Sweep, x: str, y: str, answer: str) -> Figure:
     )
     title(
         drawn,
-        name_of(answer).capitalize(),
+        capital(name_of(answer)),
         sweep.plan.study.name + ("" if fixed else ", mean over the other numbers" if regular or many else ""),
     )
     return drawn
@@ -289,7 +289,7 @@ def pareto(sweep: Sweep, best: pd.DataFrame, x: str, y: str) -> Figure:
         name_points(axes, points, names, others, fontsize=FONT - 1.5, color=PALETTE[1])
     title(
         drawn,
-        f"{name_of(y).capitalize()} against {name_of(x)}",
+        f"{capital(name_of(y))} against {name_of(x)}",
         f"{len(best)} of {len(feasible)} variants are on the Pareto front",
     )
     return drawn

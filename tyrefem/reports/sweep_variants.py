@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tyrefem.errors import InputError, nearest
-from tyrefem.reports.vtk import file_name, write_series
+from tyrefem.reports.vtk import write_series
+from tyrefem.reports.words import file_stem, unlike
 
 if TYPE_CHECKING:
     from tyrefem.sweep.design import DesignData
@@ -60,7 +61,10 @@ def write_variants(
     chosen = chosen_variants(design, [FRONT] if variants is None else map(str, variants))
     if not chosen:
         raise InputError("no variant is on the Pareto front: none is feasible", field="variant")
+    assert design.swept is not None
+    taken: set[str] = set()
+    # Of all variants, so that the folder of each is the same whichever are chosen.
+    folders = {name: folder / FOLDER / unlike(file_stem(name, "tyre"), taken) for name in design.swept.plan.names}
     return {
-        name: write_series(run(design.variant_study(name)), folder / FOLDER / file_name(name), revolved=revolved)
-        for name in chosen
+        name: write_series(run(design.variant_study(name)), folders[name], revolved=revolved) for name in chosen
     }
