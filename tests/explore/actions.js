@@ -28,9 +28,13 @@ const ambient = E.data.numbers.findIndex((number) => number.key === "drive.ambie
 out.frost = [await typed(ambient, "-5"), await typed(ambient, "0"), await typed(0, "-5")];
 /* A setting without a solution: what still stands there is of another setting. */
 await typed(0, "1e9");
-out.unsolved = { badge: text("badge"), faded: Number(getComputedStyle(document.querySelector(".numbers")).opacity), sliders: Number(getComputedStyle(document.querySelector(".sliders")).opacity) };
+out.unsolved = { badge: text("badge"), faded: Number(getComputedStyle(document.querySelector(".numbers")).opacity), sliders: Number(getComputedStyle(document.querySelector(".sliders")).opacity), command: text("command"), pins: ["pin-a", "pin-b"].map((id) => $(id).disabled) };
+$("theme").click();
+$("theme").click();
+out.unsolved.later = text("badge");
 await typed(0, "31.5");
 out.solved = Number(getComputedStyle(document.querySelector(".numbers")).opacity);
+out.pinsAgain = ["pin-a", "pin-b"].map((id) => $(id).disabled);
 /* Copied texts, at a setting where every number has moved. */
 E.data.numbers.forEach((number, i) => E.setNumber(i, number.low + 0.3 * (number.high - number.low)));
 await settle();
@@ -39,7 +43,6 @@ out.written = E.data.numbers.map((number, i) => E.written(number, E.state.number
 /* Two settings. */
 $("pin-a").click();
 E.setNumber(0, E.data.numbers[0].high);
-await settle();
 $("pin-b").click();
 await settle();
 out.pins = { shown: !$("pins-body").hidden, rows: [...document.querySelectorAll("#pins-table tr")].map((row) => [...row.children].map((cell) => cell.textContent)), note: text("difference-note"), hottest: [E.state.pins.A, E.state.pins.B].map((pin) => pin.solution.answers().hottest_degC), ghosts: document.querySelectorAll("#history-chart .ghost").length };
@@ -72,6 +75,7 @@ out.measured = { numbers: E.state.numbers.slice(), residuals: E.residuals(E.stat
 $("reset").click();
 await settle();
 out.reset = { numbers: E.state.numbers.slice(), start: E.data.numbers.map((number) => number.start), command: text("command") };
+out.touch = getComputedStyle(document.querySelector("#history-chart svg")).touchAction;
 out.unnamed = [...document.querySelectorAll("input, select, button, canvas, svg")].filter((each) => {
   const label = each.id && document.querySelector(`label[for="${each.id}"]`);
   return !(each.getAttribute("aria-label") || label || each.closest("label") || each.textContent.trim());

@@ -1,4 +1,4 @@
-"""A small tyre's exploration, made once: two phases, a lumped rim, a lagging sensor, measured runs."""
+"""A small tyre's exploration, made once: two phases, a lumped rim, a lagging sensor, odd names, measured runs."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ VARY = {
 
 @pytest.fixture(scope="session")
 def small(tmp_path_factory: pytest.TempPathFactory) -> Study:
-    folder = tmp_path_factory.mktemp("explore")
+    folder = tmp_path_factory.mktemp("a tyre's page")
     times = np.arange(0.0, 121.0, 20.0)
     rows = [f"{t:g},{25 + 6 * (1 - np.exp(-t / 60)):.3f},{25 + 2 * (1 - np.exp(-t / 90)):.3f}" for t in times]
     for name in ("slow.csv", "other.csv"):
@@ -55,6 +55,7 @@ rim = { law = "lumped", mass = "4 kg", cooling = "2 W/K", air = "0.5 W/K" }
 skin = { s = "0.3 in", depth = "0.60 in" }
 deep = { s = "2 in", depth = "0.1 in", lag = "4 s" }
 tread = { s = "2 in", depth = "0.02 in" }               # named as a region
+lost-max = { s = "1 in", depth = "0.2 in" }             # named as losses and highest temperatures are
 
 [[measured]]
 table = "slow.csv"

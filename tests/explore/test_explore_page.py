@@ -8,6 +8,7 @@ import shlex
 import tomllib
 from html.parser import HTMLParser
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -18,6 +19,10 @@ from tyrefem.api import Exploration, Study
 from tyrefem.cli.common import settings
 from tyrefem.compare.experiment import experiments
 from tyrefem.inputs.changes import value_at
+from tyrefem.realtime.default_box import default_box
+from tyrefem.reports.explore_data import changes_of_file, limits_of
+from tyrefem.reports.explore_settings import label_of
+from tyrefem.variants.card import LimitCard
 
 #: Settings at which page and Python are compared, and the largest difference that is allowed, K (and Pa, N, W).
 SETTINGS, SAME = 20, 1e-6
@@ -71,6 +76,10 @@ def test_every_number_has_the_certificate_s_error_beside_it(page: str, explored:
     assert [row for row in shown["readings"] if not all(float(cell) > 0 for cell in row[1:5])] == []
     assert all("±" in tile for tile in shown["tiles"])
     assert shown["tiles"][2].count("±") == 2  # rolling resistance and its coefficient
+    certified = shown["certified"]
+    assert certified["lost max"].endswith(" K")
+    assert certified["lost: rim"].endswith(" W")
+    assert certified["bead, its highest"].endswith(" K")
 
 
 @pytest.mark.usefixtures("needs_chromium")
@@ -127,6 +136,30 @@ def test_numbers_of_another_setting_fade(acted: Any) -> None:
 
 
 @pytest.mark.usefixtures("needs_chromium")
+def test_a_setting_without_a_solution_is_copied_as_it_is_and_not_pinned(acted: Any) -> None:
+    """Its numbers would stand beside the temperatures of another setting; the badge says so in another light too."""
+    assert "'drive.speed=1000000000 mph'" in acted["unsolved"]["command"]
+    assert acted["unsolved"]["pins"] == [True, True]
+    assert acted["pinsAgain"] == [False, False]
+    assert acted["unsolved"]["later"] == acted["unsolved"]["badge"]
+
+
+@pytest.mark.usefixtures("needs_chromium")
+def test_a_finger_moves_the_time_in_the_chart(acted: Any) -> None:
+    """Without this, a browser takes the movement for its own after a few pixels."""
+    assert acted["touch"] == "pan-y"
+
+
+@pytest.mark.usefixtures("needs_chromium")
+def test_a_long_name_leaves_room_for_the_section(page: str) -> None:
+    long = page.replace("lost-max", "a thermocouple in the shoulder " * 4)
+    size = "[window.explore.section.scale, document.getElementById('section').clientHeight]"
+    scale, height = result_in_browser(long, f"await wait(200); return {size};")
+    assert scale > 0
+    assert height > 100
+
+
+@pytest.mark.usefixtures("needs_chromium")
 def test_a_setting_outside_the_box_is_marked(acted: Any) -> None:
     outside = acted["outside"]
     assert outside["number"] == 31.5
@@ -172,7 +205,7 @@ def test_two_settings_stand_side_by_side(acted: Any) -> None:
     assert 0 < float(error) < 0.5, "the certificate's error beside them"
     assert all(row[-1] for name, row in rows.items() if name != "speed")
     assert pins["note"].startswith("B − A: blue colder, red hotter")
-    assert pins["ghosts"] == 2 * 5
+    assert pins["ghosts"] == 2 * 6
 
 
 @pytest.mark.usefixtures("needs_chromium")
@@ -258,6 +291,38 @@ def test_the_page_needs_no_network(page: str) -> None:
     assert set(re.findall(r"https?://[^\s\"']+", plain)) == {"http://www.w3.org/2000/svg"}
     assert not re.search(r"@import|url\(|fetch\(|XMLHttpRequest|WebSocket", plain)
     assert "<title>Explore: Small tyre &lt;of the tests&gt;</title>" in page
+
+
+def test_no_sign_of_the_data_is_one_of_html(page: str) -> None:
+    """A title with ``<!-- <script>`` would hide the end of the data, and the page would stay empty."""
+    (data,) = re.findall(r'<script type="application/json" id="data">(.*?)</script>', page, flags=re.DOTALL)
+    assert "<" not in data
+    assert json.loads(data)["title"] == "Small tyre <of the tests>"
+
+
+def test_a_changed_table_with_dotted_names_is_copied_whole(small: Study) -> None:
+    """``sensors.T1.5`` would be the key 5 of a sensor T1."""
+    sensors = {**small.data["sensors"], "T1.5": {"s": "0 mm", "depth": "2 mm"}}
+    changes = changes_of_file(small.replace({"sensors": sensors}))
+    assert changes == {"mesh.size": "14 mm", "sensors": sensors}
+    assert Study.load(small.file).replace(changes).sensors.keys() == sensors.keys()
+
+
+def test_a_limit_on_both_sides_has_two_rows() -> None:
+    limits = {"hottest_degC": LimitCard(below=40, above=20), "rolling_resistance_N": LimitCard(above=5)}
+    model: Any = SimpleNamespace(plan=SimpleNamespace(limits=limits))
+    rows = [(row["answer"], row["below"], row["above"]) for row in limits_of(model, ())]
+    assert rows == [("hottest_degC", 40, None), ("hottest_degC", None, 20), ("rolling_resistance_N", None, 5)]
+
+
+def test_a_phase_with_a_dot_in_its_name_has_sliders(small: Study) -> None:
+    phases = [{"name": "at 1.5 bar", "duration": "20 s", "speed": "12 mph"}]
+    drive = {"load": "2700 lbf", "pressure": "83 psi", "phases": phases}
+    study = small.replace({"drive": drive, "measured": []})
+    key = "drive.phases.0.speed"
+    assert default_box(study)[key] == {"from": "6 mph", "to": "18 mph"}
+    assert value_at(study.data, key) == "12 mph"
+    assert label_of(key, ["at 1.5 bar"]) == ("Drive", "speed, at 1.5 bar")
 
 
 def test_a_notebook_shows_the_page(explored: Exploration) -> None:

@@ -53,6 +53,8 @@ def _drive(study: StudyData) -> dict[str, Any]:
     data = study.data["drive"]
     phases = data.get("phases")
     names = [str(phase.get("name", number)) for number, phase in enumerate(phases or [])]
+    # A name with a dot is no part of a dotted name.
+    names = [str(number) if "." in name else name for number, name in enumerate(names)]
     box: dict[str, Any] = {}
     for quantity in UNITS:
         used = not phases or any(quantity not in phase for phase in phases)

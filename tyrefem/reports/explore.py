@@ -30,8 +30,8 @@ def page(model: BoxModel) -> str:
     from markupsafe import Markup
 
     data = page_data(model)
-    # "</" would end the script element.
-    text = json.dumps(data, allow_nan=False, separators=(",", ":")).replace("</", "<\\/")
+    # "</" would end the script element, "<!--" with "<script" would hide its end.
+    text = json.dumps(data, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
     return environment.from_string(resource("explore.html")).render(
         title=data["title"],

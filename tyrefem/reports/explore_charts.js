@@ -85,6 +85,8 @@ class HistoryChart {
     this.axes.svg.addEventListener("pointerdown", (event) => { this.axes.svg.setPointerCapture(event.pointerId); move(event); });
     this.axes.svg.addEventListener("pointermove", (event) => { if (event.buttons) move(event); });
     this.axes.svg.style.cursor = "ew-resize";
+    /* A finger that moves across moves the time; up and down it scrolls the page. */
+    this.axes.svg.style.touchAction = "pan-y";
   }
 
   /* Histories of a solution: name -> temperatures at `times`. */

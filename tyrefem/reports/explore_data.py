@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 def page_data(model: BoxModel) -> dict[str, Any]:
     """All data of the page, for JSON."""
     study, about = model.study, model.about
-    start = start_numbers(model)
+    start, phases = start_numbers(model), [phase.name for phase in study.card.drive.phases]
     data = {
         "name": study.name,
         "argument": argument(study),
@@ -38,7 +38,7 @@ def page_data(model: BoxModel) -> dict[str, Any]:
         "constants": {"GAMMA": GAMMA, "PHI": PHI, "PHI_2": PHI_2},
         "about": {key: about[key] for key in ("read", "heat", "lost", "factors", "hot")},
         "arrays": {name: packed(values) for name, values in model.arrays.items() if name != "turn"},
-        "numbers": [slider(number, first) for number, first in zip(model.plan.varied, start, strict=True)],
+        "numbers": [slider(number, first, phases) for number, first in zip(model.plan.varied, start, strict=True)],
         "phases": [
             {"name": phase.name, "start": begin, "duration": phase.duration}
             for phase, begin in zip(study.card.drive.phases, study.card.drive.starts, strict=True)
@@ -71,7 +71,10 @@ def argument(study: StudyData) -> str:
 
 
 def changes_of_file(study: StudyData) -> dict[str, Any]:
-    """Dotted name -> value of the study, where it differs from its file: ``--set`` of the command, a case."""
+    """Dotted name -> value of the study, where it differs from its file: ``--set`` of the command, a case.
+
+    A table in which a name has a dot is one value: a dotted name could not reach into it.
+    """
     if study.file is None:
         return {}
     try:
@@ -80,7 +83,12 @@ def changes_of_file(study: StudyData) -> dict[str, Any]:
         return {}
 
     def differences(old: Any, new: Any, name: str) -> Iterator[tuple[str, Any]]:
-        if isinstance(old, Mapping) and isinstance(new, Mapping) and set(old) <= set(new):
+        if (
+            isinstance(old, Mapping)
+            and isinstance(new, Mapping)
+            and set(old) <= set(new)
+            and not any("." in key for key in new)
+        ):
             for key, value in new.items():
                 yield from differences(old.get(key), value, f"{name}.{key}" if name else key)
         elif old != new:
@@ -92,10 +100,12 @@ def changes_of_file(study: StudyData) -> dict[str, Any]:
 
 
 def limits_of(model: BoxModel, start: Sequence[float]) -> list[dict[str, Any]]:
-    """Limits of the page; without any, as hot as the study itself."""
+    """Limits of the page, one each for what an answer must be below and above; without any, as hot as the study."""
     given = [
-        {"answer": name, "below": limit.below, "above": limit.above, "given": True}
+        {"answer": name, "below": None, "above": None, "given": True} | {side: value}
         for name, limit in model.plan.limits.items()
+        for side, value in (("below", limit.below), ("above", limit.above))
+        if value is not None
     ]
     if given:
         return given

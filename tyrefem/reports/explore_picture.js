@@ -7,6 +7,10 @@ function niceStep(span, count) {
   return (part < 1.5 ? 1 : part < 3.5 ? 2 : part < 7.5 ? 5 : 10) * power;
 }
 
+/* A name that leaves room for the rest. */
+const LONGEST = 30;
+function cut(name) { return name.length > LONGEST ? `${name.slice(0, LONGEST - 1)}…` : name; }
+
 class FieldModes {
   constructor(stored) {
     const kinds = decoded({ points: stored.points, triangles: stored.triangles, modes: stored.modes, low: stored.low, step: stored.step, turn: stored.turn, hot: stored.hot });
@@ -67,7 +71,7 @@ class SectionPicture {
     const plain = this.small || width < 560, bar = this.small ? 6 : plain ? 44 : 52;
     this.context.font = "11.5px system-ui, sans-serif";
     const widest = (names) => Math.max(0, ...names.map((name) => this.context.measureText(name).width));
-    const left = plain ? 8 : 20 + widest(this.regions.map((region) => region.name)), right = plain ? 8 : 62 + widest(this.sensors.map((sensor) => sensor.name));
+    const left = plain ? 8 : 20 + widest(this.regions.map((region) => cut(region.name))), right = plain ? 8 : 62 + widest(this.sensors.map((sensor) => cut(sensor.name)));
     this.margins = { left, right: right + bar, top: 10, bottom: this.small ? 6 : 10 };
     const across = r.right - r.left, up = r.high - r.low;
     const most = this.small ? 320 : plain ? Math.max(170, Math.min(0.31 * window.innerHeight, 290)) : Math.max(420, Math.min(640, 0.72 * window.innerHeight));
@@ -291,7 +295,7 @@ class SectionPicture {
 
   drawRegions() {
     const c = this.context, side = this.mirror ? -1 : 1, edge = this.x(this.range.left) - 8;
-    const labels = this.regions.map((region) => ({ text: region.name.replaceAll("-", " "), x: this.x(side * Math.abs(region.z)), y: this.y(region.r) }));
+    const labels = this.regions.map((region) => ({ text: cut(region.name.replaceAll("-", " ")), x: this.x(side * Math.abs(region.z)), y: this.y(region.r) }));
     if (!this.mirror) labels.forEach((label, i) => { label.x = this.x(this.regions[i].z); });
     c.font = "11.5px system-ui, sans-serif";
     c.textAlign = "right";
@@ -318,7 +322,7 @@ class SectionPicture {
         c.font = "11.5px system-ui, sans-serif";
         c.fillStyle = this.ink(true);
         const value = readings[label.name];
-        c.fillText(label.name.replaceAll("-", " "), edge + 40, label.at);
+        c.fillText(cut(label.name.replaceAll("-", " ")), edge + 40, label.at);
         c.font = "600 11.5px system-ui, sans-serif";
         c.fillStyle = this.ink(false);
         if (value !== undefined) c.fillText(value.toFixed(1), edge + 1, label.at);

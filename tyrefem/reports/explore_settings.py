@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -99,8 +100,8 @@ WORDS = {
 SIDES = {"road": "road", "outside_air": "outside air", "contained_air": "contained air", "rim": "rim"}
 
 
-def label_of(key: str) -> tuple[str, str]:
-    """Group and label of a slider.
+def label_of(key: str, phases: Sequence[str] = ()) -> tuple[str, str]:
+    """Group and label of a slider; ``phases``: names of the drive's phases, for a key that has a number.
 
     >>> label_of("drive.phases.taxi.speed"), label_of("materials.tread.loss_tangent.value")
     (('Drive', 'speed, taxi'), ('Rubber', 'tan δ, tread'))
@@ -110,6 +111,7 @@ def label_of(key: str) -> tuple[str, str]:
         case ["drive", name]:
             return "Drive", WORDS.get(name, name.replace("_", " "))
         case ["drive", "phases", phase, name]:
+            phase = phases[int(phase)] if phase not in phases and phase.isdigit() and phases else phase
             return "Drive", f"{WORDS.get(name, name.replace('_', ' '))}, {phase}"
         case ["materials", region, table, *rest]:
             name = WORDS.get(table, table.replace("_", " "))
@@ -125,9 +127,9 @@ def label_of(key: str) -> tuple[str, str]:
 SYMBOLS = {"degC": "°C", "degF": "°F", "W/m**2/K": "W/m²K", "W*s/m**3/K": "Ws/m³K", "W/m/K": "W/mK", "J/kg/K": "J/kgK"}
 
 
-def slider(number: Varied, start: float) -> dict[str, Any]:
-    """A slider: key, group, label, unit, ends, the study's number."""
-    group, label = label_of(number.key)
+def slider(number: Varied, start: float, phases: Sequence[str] = ()) -> dict[str, Any]:
+    """A slider: key, group, label, unit, ends, the study's number; ``phases`` as in `label_of`."""
+    group, label = label_of(number.key, phases)
     return {
         "key": number.key,
         "group": group,

@@ -49,7 +49,7 @@ const lines = [...tyre.about.read.map((name, i) => ({ name, colour: COLOURS[i % 
   .map((line) => ({ ...line, shown: true }));
 
 const state = {
-  numbers: DATA.numbers.map((number) => number.start), time: tyre.end, solution: null, field: null, run: null, pins: {}, playing: false,
+  numbers: DATA.numbers.map((number) => number.start), time: tyre.end, solution: null, failure: "", field: null, run: null, pins: {}, playing: false,
   limits: DATA.limits.map((limit) => ({ ...limit })), axes: DATA.axes.slice(), envelope: [], envelopeDone: false, scale: null,
 };
 
@@ -169,16 +169,16 @@ const isDark = () => document.documentElement.dataset.theme === "dark";
 function update() {
   DATA.numbers.forEach((_, i) => showNumber(i));
   try {
-    state.solution = tyre.solve(state.numbers);
-    if (!Number.isFinite(state.solution.states[state.solution.states.length - 1])) throw new Error("no finite temperatures");
-  } catch (error) {
-    $("badge").textContent = `No solution at this setting: ${error.message}`;
-    $("badge").className = "badge outside";
-    document.querySelector("main").classList.add("unsolved");
-    return;
-  }
-  document.querySelector("main").classList.remove("unsolved");
+    const solution = tyre.solve(state.numbers);
+    if (!Number.isFinite(solution.states[solution.states.length - 1])) throw new Error("no finite temperatures");
+    state.solution = solution;
+    state.failure = "";
+  } catch (error) { state.failure = error.message; }
+  const failed = state.failure !== "";
+  document.querySelector("main").classList.toggle("unsolved", failed);
+  for (const id of ["pin-a", "pin-b"]) $(id).disabled = failed;
   showBadge();
+  if (failed) { showTexts(); return; }
   drawTime();
   if (!restDue) restDue = setTimeout(drawRest, 0);
 }
@@ -247,8 +247,8 @@ function anyOutside() { return DATA.numbers.some((number, i) => outside(number, 
 
 function showBadge() {
   const out = DATA.numbers.filter((number, i) => outside(number, state.numbers[i])), badge = $("badge");
-  badge.className = out.length ? "badge outside" : "badge";
-  badge.textContent = out.length
+  badge.className = out.length || state.failure ? "badge outside" : "badge";
+  badge.textContent = state.failure ? `No solution at this setting: ${state.failure}` : out.length
     ? `Outside the certified box (${out.map((number) => number.label).join("; ")}): the errors are not known`
     : `certified: hottest ± ${significant(errors.hottest, 1)} K, anywhere ± ${significant(DATA.certificate.field, 1)} K`;
 }
@@ -508,6 +508,9 @@ function makeAxes() {
 
 let pinPictures;
 function pin(name) {
+  /* The setting may have changed since the last frame. */
+  if (due) update();
+  if (state.failure) return;
   if (restDue) drawRest();
   state.pins[name] = { numbers: state.numbers.slice(), solution: state.solution, series: state.series, time: state.time };
   drawPins();
@@ -566,7 +569,7 @@ function drawPins() {
 
 function showTexts() {
   const changed = DATA.numbers.map((number, i) => [number, state.numbers[i]]).filter(([number, value]) => value !== number.start);
-  const quoted = (text) => /[^\w.,:=/+-]/.test(text) ? `'${text}'` : text;
+  const quoted = (text) => /[^\w.,:=/+-]/.test(text) ? `'${text.replaceAll("'", "'\\''")}'` : text;
   // What was changed of the study's file before the page was made comes first.
   const flags = [...Object.entries(DATA.changes), ...changed.map(([number, value]) => [number.key, written(number, value)])];
   $("command").textContent = [`tyrefem run ${quoted(DATA.argument)}`, ...flags.map(([key, value]) => `    --set ${quoted(`${key}=${typeof value === "string" ? value : literal(value)}`)}`)].join(" \\\n");
@@ -574,13 +577,14 @@ function showTexts() {
   DATA.numbers.forEach((number, i) => { text = text.replace(`"@${i}@"`, () => literal(written(number, state.numbers[i]))); });
   $("toml").textContent = text.trim();
 }
-const CERTIFIED = { gas_pressure: WORDS.gas_pressure_Pa, rolling_resistance: WORDS.rolling_resistance_N };
 function makeErrors() {
   const cells = [["anywhere in the section, any time", `${significant(DATA.certificate.field)} K`]];
-  const unit = (name) => /^(generated|lost|stored)/.test(name) ? "W" : name === "rolling_resistance" ? "N" : name === "gas_pressure" ? "Pa" : "K";
-  for (const name of [...tyre.about.read, "contained-air", "hottest", ...tyre.hotParts.map(([region]) => `${region} max`), "gas_pressure", "rolling_resistance", ...tyre.about.heat, "generated", ...tyre.about.lost, "stored", "lost and stored"]) {
-    if (errors[name] !== undefined) cells.push([CERTIFIED[name] || short(name).replace(" max", ", its highest"), `${significant(errors[name])} ${unit(name)}`]);
-  }
+  const add = (name, unit, words = short(name)) => { if (errors[name] !== undefined) cells.push([words, `${significant(errors[name])} ${unit}`]); };
+  for (const name of [...tyre.about.read, "contained-air", "hottest"]) add(name, "K");
+  for (const [region] of tyre.hotParts) add(`${region} max`, "K", `${short(region)}, its highest`);
+  add("gas_pressure", "Pa", WORDS.gas_pressure_Pa);
+  add("rolling_resistance", "N", WORDS.rolling_resistance_N);
+  for (const name of [...tyre.about.heat, "generated", ...tyre.about.lost, "stored", "lost and stored"]) add(name, "W");
   for (const [name, value] of cells) $("errors").append(make("div", {}, make("dt", { text: name }), make("dd", { text: value })));
 }
 let spoken = 0;

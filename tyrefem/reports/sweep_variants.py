@@ -65,6 +65,4 @@ def write_variants(
     taken: set[str] = set()
     # Of all variants, so that the folder of each is the same whichever are chosen.
     folders = {name: folder / FOLDER / unlike(file_stem(name, "tyre"), taken) for name in design.swept.plan.names}
-    return {
-        name: write_series(run(design.variant_study(name)), folders[name], revolved=revolved) for name in chosen
-    }
+    return {name: write_series(run(design.variant_study(name)), folders[name], revolved=revolved) for name in chosen}
