@@ -17,6 +17,7 @@ import pandas as pd
 import pytest
 from hidden import HASTY, RUNS, Case
 from made_up import confounded, judged, unexplained
+from matplotlib.colors import to_hex
 
 from tyrefem.api.diagnosis import Diagnosis
 from tyrefem.api.diagnosis_record import DiagnosisRecord
@@ -38,7 +39,8 @@ from tyrefem.diagnose.words.sentences import noise_words, verdict_words
 from tyrefem.diagnose.words.support import alone_words, stated_words, support_words
 from tyrefem.measured import MeasuredRun
 from tyrefem.reports.diagnosis import page
-from tyrefem.reports.diagnosis_figures import pictures, rms_figure
+from tyrefem.reports.diagnosis_figures import pictures, probabilities_figure, rms_figure
+from tyrefem.reports.diagnosis_gap import AFTER
 from tyrefem.reports.diagnosis_summary import (
     CHARACTERS,
     HEIGHT,
@@ -551,3 +553,20 @@ def test_sensors_and_films_have_names_in_corrections(case: Case) -> None:
     assert kelvins == sorted(kelvins, reverse=True)
     unknowns: list[Unknown] = [each.pull.unknown for each in shown]
     assert not [each.words for each, unknown in zip(shown, unknowns, strict=True) if unknown.key in each.words]
+
+
+def test_the_picture_of_probabilities_marks_the_set_of_the_study_and_none_of_its_parts(case: Case) -> None:
+    d = certain(case.diagnosis)
+    both: Any = SimpleNamespace(members=d.judgement.best.members)
+    drawn = probabilities_figure(replace(d, best=both))
+    marked = []
+    for axes in drawn.axes:
+        names = [label.get_text() for label in axes.get_yticklabels()]
+        marked.append(
+            [
+                name
+                for name, bar in zip(names, axes.patches, strict=True)
+                if to_hex(bar.get_facecolor()) == AFTER.lower()
+            ]
+        )
+    assert marked == [["hot-road + sun"], ["hot-road", "sun"]]

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from tyrefem.diagnose.beside.discrepancy import ENERGY
 from tyrefem.diagnose.unknowns.energy_shapes import SHAPE
 from tyrefem.diagnose.verdicts.verdict import PARTLY, UNEXPLAINED
@@ -16,6 +18,7 @@ if TYPE_CHECKING:
 
     from tyrefem.diagnose.diagnosis import DiagnosisData
     from tyrefem.diagnose.fitting.fits import FittedSet
+    from tyrefem.inputs.study import StudyData
 
 NAME = "energy-share.png"
 
@@ -35,6 +38,12 @@ def _fit(d: DiagnosisData) -> FittedSet | None:
     return fit if fit is not None and any(unknown.effect == SHAPE for unknown in fit.unknowns) else None
 
 
+def sensor_stations(study: StudyData) -> list[float]:
+    """Distance of every sensor from the crown along the meridian, m, however its place is given."""
+    places = np.array([*study.stated_places.values()]).reshape(-1, 2)
+    return np.abs(study.section.locate(places)[0]).tolist() if len(places) else []
+
+
 def energy_figure(d: DiagnosisData, fit: FittedSet) -> Figure:
     """Draw how much more or less heat the tyre makes than the model, %, with one and two standard deviations.
 
@@ -49,9 +58,8 @@ def energy_figure(d: DiagnosisData, fit: FittedSet) -> Figure:
         axes.fill_between(s * 1e3, low, high, color=PALETTE[0], alpha=alpha, lw=0)
     axes.plot(s * 1e3, 100 * share, color=PALETTE[0], lw=1.6)
     axes.axhline(0.0, color=INK, lw=0.7)
-    for card in d.original.sensors.values():
-        if card.s is not None:
-            axes.axvline(abs(card.s) * 1e3, ymax=0.04, color=QUIET, lw=1.4)
+    for station in sensor_stations(d.original):
+        axes.axvline(station * 1e3, ymax=0.04, color=QUIET, lw=1.4)
     axes.set_xlim(0.0, d.original.section.line.length * 1e3)
     axes.set_ylabel("more heat than the model [%]", fontsize=FONT)
     axes.set_xlabel("place along the meridian from crown to bead, s [mm]; ticks: sensors", fontsize=FONT)

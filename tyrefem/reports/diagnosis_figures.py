@@ -133,7 +133,8 @@ def probabilities_figure(d: DiagnosisData, most: int = 8) -> Figure:
         (lower, sets, "set of effects: probability that exactly these are present"),
     ):
         for y, (name, probability) in enumerate(rows):
-            chosen = name in members or name == best or set(name.split(" + ")) == members
+            # A part of the chosen set is not this set.
+            chosen = name in members if axes is upper else name == best or set(name.split(" + ")) == members
             axes.barh(y, probability, height=0.7, color=AFTER if chosen else "#b9c0c8")
             axes.text(probability + 0.01, y, percent(probability), fontsize=FONT - 1, va="center", color=INK)
         axes.set_yticks(range(len(rows)), [short(name, 50) for name, _ in rows])
