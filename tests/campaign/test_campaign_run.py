@@ -9,12 +9,13 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import pandas as pd
 import pytest
 
 import tyrefem as tf
 from tyrefem.api import Study
 from tyrefem.cli import main
-from tyrefem.reports.campaign import run_campaign, write_campaign_report
+from tyrefem.reports.campaign import bars, run_campaign, write_campaign_report
 from tyrefem.sweep import campaign as campaigns
 from tyrefem.sweep.campaign import CampaignData
 
@@ -163,3 +164,12 @@ def test_command_line(folder: Path, monkeypatch: pytest.MonkeyPatch, capfd: pyte
     assert [case["case"] for case in json.loads(out)["cases"]] == ["light", "usual", "crushed"]
     assert json.loads(out)["cases"][2]["hottest_degC"] is None
     assert not (folder / "bare/report.html").exists()
+
+
+def test_cases_that_all_stand_have_a_picture_of_their_resistance() -> None:
+    """An axis from 0 to 0 would be a warning."""
+    columns = {"pressure_Pa": 5e5, "load_N": 1e4, "hottest_degC": 0.0, "rolling_resistance_coefficient": 0.0}
+    done = pd.DataFrame([{"case": name, "section": "tyre", **columns} for name in ("a", "b")])
+    for column in ("hottest_degC", "rolling_resistance_coefficient"):
+        low, high = bars(done, column).axes[0].get_xlim()
+        assert low < 0 < high

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import io
 import itertools
+import json
 from dataclasses import replace
 
 import numpy as np
 import pytest
+import tomli_w
 
+import tyrefem
 from tyrefem.errors import InputError
+from tyrefem.library import load
 from tyrefem.reports.figures import pictures, write_pictures
 from tyrefem.reports.figures.budget import budget_figure, waterfall
 from tyrefem.reports.figures.cells import linear_cells, triangles
@@ -277,3 +281,16 @@ def test_spread_keeps_order_and_gap():
     assert (np.argsort(placed) == np.argsort(wanted)).all()
     # Least squares: the crowded block of four stays centred on where it wanted to be.
     assert placed[:4].mean() == pytest.approx(wanted[:4].mean())
+
+
+def test_a_dollar_sign_in_the_name_of_a_region_is_no_formula(tmp_path):
+    data, _, _ = load("section", "nasa-22x5.5-8pr", None)
+    odd = json.loads(json.dumps(data).replace('"sidewall"', json.dumps(r"$\bad$")))
+    (tmp_path / "odd.toml").write_text(tomli_w.dumps(odd), encoding="utf-8")
+    cards = {"carcass": "nasa-carcass", "bead": "nasa-bead", "tread": "nasa-tread", r"$\bad$": "nasa-sidewall"}
+    study = tyrefem.study(
+        "nasa-22x5.5-8pr", {"section": str(tmp_path / "odd.toml"), "materials": cards, "mesh.size": "20 mm"}
+    )
+    for drawn in (mesh_figure(study.mesh()), section_figure(study.section)):
+        drawn.draw_without_rendering()
+        assert any(r"\bad" in text for text in texts(drawn))

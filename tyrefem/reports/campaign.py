@@ -171,7 +171,7 @@ def bars(done: pd.DataFrame, column: str) -> Figure:
     drawn = figure(9.0, below + high + TITLE + 0.25)
     axes = add_axes(drawn, left, below, 8.75 - left, high)
     places, values = list(range(len(done))), done[column].to_list()
-    low, spread = min(values), max(max(values) - min(values), 1e-3 * abs(max(values)))
+    low, spread = min(values), max(max(values) - min(values), 1e-3 * abs(max(values))) or 1.0
     axes.set_xlim(low - 0.08 * spread, max(values) + 0.16 * spread)
     axes.set_ylim(len(done) - 0.4, -0.6)
     sections = list(dict.fromkeys(done["section"]))

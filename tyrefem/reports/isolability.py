@@ -7,6 +7,7 @@ import io
 import numpy as np
 
 from tyrefem.diagnose.layout.isolability import MARGIN, Isolability
+from tyrefem.reports.figures.style import plain
 
 
 def picture(isolability: Isolability) -> bytes:
@@ -29,10 +30,8 @@ def picture(isolability: Isolability) -> bytes:
     axes.set_yticks(range(len(names)), names, fontsize=6)
     axes.set_xlabel("fitted candidate", fontsize=8)
     axes.set_ylabel("hidden effect, at its usual strength", fontsize=8)
-    axes.set_title(
-        f"{isolability.study}: lead of the hidden effect over a candidate (above {MARGIN:g} nats: distinguished)",
-        fontsize=9,
-    )
+    words = f"lead of the hidden effect over a candidate (above {MARGIN:g} nats: distinguished)"
+    axes.set_title(f"{plain(isolability.study)}: {words}", fontsize=9)
     bar = figure.colorbar(image, ax=axes, shrink=0.7, ticks=levels[:-1])
     bar.set_label("lead, nats", fontsize=8)
     bar.ax.tick_params(labelsize=7)

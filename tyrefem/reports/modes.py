@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tyrefem.output import atomic_folder, jsonable
+from tyrefem.reports.figures.style import plain
 
 if TYPE_CHECKING:
     from tyrefem.mechanics.footprint.natural_frequencies import NaturalFrequencies
@@ -75,7 +76,8 @@ def picture(result: NaturalFrequencies) -> bytes:
     if image is not None:
         bar = figure.colorbar(image, ax=grid.tolist(), shrink=0.6)
         bar.set_label("circumferential over largest displacement", fontsize=8)
-    figure.suptitle(f"{result.study.name}: rim held, {result.tyre.pressure / 1e3:.0f} kPa, unloaded", fontsize=10)
+    words = f"rim held, {result.tyre.pressure / 1e3:.0f} kPa, unloaded"
+    figure.suptitle(f"{plain(result.study.name)}: {words}", fontsize=10)
     buffer = io.BytesIO()
     figure.savefig(buffer, format="png", dpi=130)
     return buffer.getvalue()

@@ -21,6 +21,7 @@ from tyrefem.reports.figures.style import (
     figure,
     line_style,
     millimetres,
+    plain,
     section_axes,
     si,
     tidy,
@@ -130,7 +131,7 @@ def strain_history_figure(cycle: StrainHarmonics, places: dict[str, tuple[float,
         axes = add_axes(drawn, 0.8, height - TITLE - 2.3 * (number + 1) + 0.45, 8.2, 1.7)
         for k, (component, history) in enumerate(zip(LABELS.values(), cycle.at(r, z, angles), strict=True)):
             axes.plot(np.degrees(angles), 100 * history, lw=1.3, label=component, **line_style(k))
-        axes.set_title(f"{name} (r {r * 1e3:.0f}, z {z * 1e3:.0f} mm)", fontsize=FONT, loc="left", color=INK)
+        axes.set_title(plain(f"{name} (r {r * 1e3:.0f}, z {z * 1e3:.0f} mm)"), fontsize=FONT, loc="left", color=INK)
         axes.set_ylabel("strain [%]", fontsize=FONT)
         axes.set_xlim(-180, 180)
         axes.set_xticks(range(-180, 181, 45))
@@ -247,7 +248,7 @@ def cord_tension_figure(footprint: Footprint, cords: Sequence[CordCycle]) -> Fig
         axes.axhline(0.0, color=INK, lw=0.5)
         r, z = (1e3 * x for x in layer.place)
         what = "cord" if layer.unit == "N" else "layer"
-        axes.set_title(f"{layer.region} (r {r:.0f}, z {z:.0f} mm)", fontsize=FONT, loc="left", color=INK)
+        axes.set_title(plain(f"{layer.region} (r {r:.0f}, z {z:.0f} mm)"), fontsize=FONT, loc="left", color=INK)
         axes.set_ylabel(f"{what} [{unit}]", fontsize=FONT)
         axes.set_xlim(-180, 180)
         axes.set_xticks(range(-180, 181, 60))
@@ -277,7 +278,8 @@ def inflation_figure(tyre: Inflation, name: str) -> Figure:
     for number, region in enumerate(body.parts):
         cells = moved[np.asarray(mesh.subdomains[region])]
         colour = FILLS[number % len(FILLS)]
-        axes.add_collection(PolyCollection(list(cells), facecolors=colour, edgecolors="white", lw=0.3, label=region))
+        shown = {"facecolors": colour, "edgecolors": "white", "lw": 0.3, "label": plain(region)}
+        axes.add_collection(PolyCollection(list(cells), **shown))
     edges = ((moved, INK, "-", f"inflated, {tyre.pressure / 1e3:.0f} kPa"), (free, QUIET, (0, (4, 1.5)), "undeformed"))
     for shape, colour, dashes, label in edges:
         axes.add_collection(LineCollection(_outline(mesh, shape), colors=colour, lw=1.1, ls=dashes, label=label))

@@ -11,7 +11,17 @@ from numpy.typing import NDArray
 
 from tyrefem.reports.figures.canvas import Canvas, canvas, draw_outlines
 from tyrefem.reports.figures.cells import triangles
-from tyrefem.reports.figures.style import ENERGY_MAP, Label, digits, millimetres, si, temperature_map, time_unit, title
+from tyrefem.reports.figures.style import (
+    ENERGY_MAP,
+    Label,
+    digits,
+    millimetres,
+    plain,
+    si,
+    temperature_map,
+    time_unit,
+    title,
+)
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -105,7 +115,7 @@ def energy_and_heat(study: StudyData, zones: list[ZoneHeat], subtitle: str, *, u
     factor_u, unit_u = si(top_u, "J/m³")
     factor_q, unit_q = si(top_q, "W/m³")
     rows = [_row(zone, total) for zone in zones]
-    names = [zone.title if zone.name == zone.title else f"{zone.name}: {zone.title}" for zone in zones]
+    names = [plain(zone.title if zone.name == zone.title else f"{zone.name}: {zone.title}") for zone in zones]
     drawn = canvas(study.section, names, rows, bars=1 if uneven else 2)
     left = right = None
     for zone in zones:

@@ -27,6 +27,7 @@ from tyrefem.reports.figures.style import (
     add_axes,
     figure,
     millimetres,
+    plain,
     section_axes,
     short,
     title,
@@ -84,7 +85,7 @@ def _boundaries(axes: Axes, section: Section) -> None:
     for name in section.boundaries:
         if name == "symmetry":
             continue
-        label: str | None = name.replace("_", " ")
+        label: str | None = plain(name.replace("_", " "))
         for line in section.boundary_line(name, 1e-3):
             x, y = millimetres(line)
             for sign in sides(section):
@@ -98,7 +99,7 @@ def _line(axes: Axes, section: Section) -> None:
     reading = (
         section.reference if section.reference in ("inner", "outer", "total") else f"middle of {section.reference}"
     )
-    axes.plot(x, y, color=INK, lw=0.9, ls=(0, (8, 2, 1.5, 2)), zorder=5, label=f"reference line ({reading})")
+    axes.plot(x, y, color=INK, lw=0.9, ls=(0, (8, 2, 1.5, 2)), zorder=5, label=plain(f"reference line ({reading})"))
 
 
 def _thicknesses(section: Section) -> list[Label]:
@@ -160,7 +161,7 @@ def mesh_figure(tyre_mesh: TyreMesh) -> Figure:
         axes.add_collection(
             PolyCollection(
                 points[mesh.t[:, elements].T], facecolors=FILLS[number % len(FILLS)], edgecolors="#404040", lw=edge,
-                label=f"{region}: {len(elements)} elements",
+                label=plain(f"{region}: {len(elements)} elements"),
             )
         )  # fmt: skip
     for name, facets in (mesh.boundaries or {}).items():
@@ -168,7 +169,7 @@ def mesh_figure(tyre_mesh: TyreMesh) -> Figure:
         color = BOUNDARIES.get(name, INK)
         axes.add_collection(
             LineCollection(ends, colors=color, lw=2.2, ls=":" if name == "symmetry" else "-",
-                           label=f"{name.replace('_', ' ')}: {ends.shape[0]} edges")
+                           label=plain(f"{name.replace('_', ' ')}: {ends.shape[0]} edges"))
         )  # fmt: skip
     section_axes(axes)
     axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize=FONT, frameon=False)
