@@ -48,10 +48,11 @@ def quadratic(study):
 
 @pytest.fixture(scope="session")
 def standing(study):
-    """A warm tyre that stands: no thermocouples, no heat made."""
+    """A warm tyre that stands: no thermocouples, a lumped rim, no heat made."""
     data = dict(study.data)
     data.pop("sensors")
     data["drive"] = {**data["drive"], "speed": "0 mph", "initial": "80 degC"}
+    data["boundaries"] = {**data["boundaries"], "rim": {"law": "lumped", "mass": "5 kg", "cooling": "1 W/K"}}
     return tf.Study("standing", data, None, study.folder).run()
 
 

@@ -151,6 +151,8 @@ def test_a_tyre_that_stands_reports_no_drag(standing, tmp_path):
     text = Page(standing.report(tmp_path / "report.html").read_text(encoding="utf-8")).text
     assert "Rolling resistance" not in text
     assert "Lumped bodies" in text
+    assert "rim" in text
+    assert "hermocouple" not in text
     assert "nan" not in text.lower().replace("nano", "")
 
 

@@ -1,4 +1,4 @@
-"""The report of a run: one HTML file with main results, tables and pictures, without scripts or links."""
+"""The report of a run: one HTML file with main results, tables and pictures, which needs no other file."""
 
 from __future__ import annotations
 
@@ -47,6 +47,7 @@ def content(result: ResultData) -> dict[str, Any]:
         "headline": headline(result),
         "published": [value.cells for value in of_run(result)],
         "sensors": sensor_rows(result),
+        "thermocouples": bool(result.sensor_places),
         "extremes": extreme_rows(result),
         "phases": phase_rows(result),
         "slip": list(slip_columns(study.card.drive)),
@@ -84,6 +85,11 @@ CAPTIONS = {
     "mesh.png": "The modelled mesh.",
     "3d": "Temperature of the tyre, a quarter cut away.",
 }
+#: Captions of a run without thermocouples.
+BARE = {
+    "temperature.png": "Temperature on the section at the end of the run.",
+    "histories.png": "Temperature of the lumped bodies over time.",
+}
 
 
 def write_report(result: ResultData, path: Path, *, three_d: bool = False) -> Path:
@@ -112,8 +118,9 @@ def render(result: ResultData, explored: ExploreLink | None = None, *, three_d: 
     picture = _three_d(result) if three_d else None
     if picture is not None:
         drawn["3d"] = picture
+    captions = CAPTIONS if result.sensor_places else CAPTIONS | BARE
     embedded = [
-        {"data": base64.b64encode(png).decode("ascii"), "caption": CAPTIONS.get(name, ""), "name": name}
+        {"data": base64.b64encode(png).decode("ascii"), "caption": captions.get(name, ""), "name": name}
         for name, png in drawn.items()
     ]
     return rendered("run.html.j2", pictures=embedded, explored=explored, **content(result))
