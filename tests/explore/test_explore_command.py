@@ -9,7 +9,8 @@ import pytest
 
 from tyrefem.api import Study, study
 from tyrefem.cli import main
-from tyrefem.reports.explore_link import explore_link
+from tyrefem.reports.explore_link import ExploreLink, explore_link
+from tyrefem.reports.run import render
 
 RANGES = ("--vary", "drive.speed=15 mph:20 mph", "--limit", "hottest_degC<60", "--tolerance", "1 K", "--workers", "1")
 
@@ -80,6 +81,13 @@ def test_reports_link_to_the_page_or_name_the_command(small: Study, tmp_path: Pa
     design = short.sweep({"drive.speed": ["10 mph", "20 mph"]}, answers=["hottest_degC"])
     page = design.save(tmp_path / f"{small.name}-sweep") / "sweep.html"
     assert f'<a href="../{small.name}-explore.html">' in page.read_text(encoding="utf-8")
+
+
+def test_a_link_to_a_page_with_a_number_sign_in_its_name(small: Study) -> None:
+    """What follows ``#`` would be a place in the page."""
+    short = small.replace({"drive.phases.rolling.duration": "20 s", "drive.phases.standing.duration": "20 s"})
+    text = render(short.run(), ExploreLink("../tyre #2 ü-explore.html", ""))
+    assert '<a href="../tyre%20%232%20%C3%BC-explore.html">../tyre #2 ü-explore.html</a>' in text
 
 
 def test_the_command_names_the_study_of_the_report(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -43,5 +43,9 @@ def test_pictures_carry_the_numbers(footprint: Footprint) -> None:
     assert f"coefficient {loss.coefficient:.4f}" in " ".join(text.get_text() for text in drawn[2].texts)
     # Four more digits and a drum, as of a truck tyre: no line is cut.
     assert all(len(text.get_text()) < 100 and not text.get_text().endswith("...") for text in drawn[2].texts)
+    # Rubber that loses nothing has its picture too: a sum of 0 %.
+    lossless = harmonics_figure(RevolutionLoss(cycle, {}, 20.0))
+    sums = [axes.lines[0].get_ydata() for axes in lossless.axes if axes.get_ylabel() == "sum [%]"]
+    assert [values[-1] for values in sums] == pytest.approx([100.0, 0.0])
     shown = history.axes[0].lines[2].get_ydata()
     assert shown == pytest.approx(100 * cycle.at(0.31, 0.0, np.linspace(-np.pi, np.pi, 37))[2])

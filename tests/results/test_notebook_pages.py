@@ -169,6 +169,13 @@ def test_text_is_escaped() -> None:
     assert "&lt;script&gt;" in html
 
 
+def test_variants_that_never_reach_a_temperature_have_no_picture_of_it() -> None:
+    """Ends of an axis without a number would be written as nan."""
+    aims = {"time_to_limit_s": "max", "mass_kg": "min"}
+    design = quick().sweep({"drive.speed": ["10 mph", "20 mph"]}, time_to="300 degC", pareto=aims, reduced="never")
+    assert notebook.variants_picture(design) == ""
+
+
 def test_a_failure_inside_leaves_the_text(monkeypatch: pytest.MonkeyPatch) -> None:
     def fails(_study: Any) -> str:
         raise RuntimeError("no picture")

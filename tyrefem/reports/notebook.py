@@ -236,10 +236,12 @@ def variants_picture(design: DesignData) -> str:
     table, front = design.table, design.pareto
     usual = ("hottest_degC", "rolling_resistance_coefficient")
     goals = [name for name in (design.card.pareto or usual) if name in table]
-    if len(goals) < 2 or not len(table):
+    if len(goals) < 2:
         return ""
     x, y = goals[0], goals[1]
     chosen = table[[x, y]].dropna()
+    if chosen.empty:
+        return ""
     ends = [(float(chosen[name].min()), float(max(chosen[name].max(), chosen[name].min() + 1e-12))) for name in (x, y)]
     on_front = set(front.index)
 

@@ -158,7 +158,7 @@ def harmonics_figure(loss: RevolutionLoss) -> Figure:
         axes.set_xlim(0, len(n) + 1)
         tidy(axes)
         share = axes.twinx()
-        share.plot(n, 100 * np.cumsum(values) / values.sum(), color=QUIET, lw=1.0)
+        share.plot(n, 100 * np.cumsum(values) / (float(values.sum()) or 1.0), color=QUIET, lw=1.0)
         share.set_ylim(0, 105)
         share.set_ylabel("sum [%]", fontsize=FONT, color=QUIET)
         share.tick_params(labelsize=FONT, colors=QUIET)
