@@ -7,6 +7,7 @@ import logging
 import re
 import sys
 import zlib
+from types import SimpleNamespace
 
 import meshio
 import numpy as np
@@ -16,6 +17,7 @@ import pyvista
 from tyrefem.reports import view3d
 from tyrefem.reports.figures.style import temperature_map
 from tyrefem.reports.grids import pyvista_grid
+from tyrefem.reports.paraview import script
 from tyrefem.reports.temperature_colours import COLOURS
 from tyrefem.reports.vtk import saved_times, write_series
 from tyrefem.reports.vtu import VtuFile, compressed
@@ -246,6 +248,13 @@ def test_the_script_for_paraview_is_python_and_shows_the_files_beside_it(run, tm
     assert values["REGIONS"] == list(run.study.section.regions)
     assert values["TITLE"] == run.study.title
     assert ("Reflect" in ast.unparse(tree)) == run.study.section.half
+
+
+def test_a_title_of_rare_signs_is_the_same_in_the_script(run):
+    title = "tyre \N{RACING CAR} \"A\" \\ 'B' {x}\n2"
+    study = SimpleNamespace(title=title, section=run.study.section)
+    lines = script(SimpleNamespace(study=study, history=run.history), "tyre", [0], solid=False).splitlines()
+    assert ast.literal_eval(next(line for line in lines if line.startswith("TITLE = "))[8:]) == title
 
 
 def test_colours_of_the_script_are_those_of_the_pictures() -> None:

@@ -105,6 +105,11 @@ view.CameraViewUp = [0.0, 1.0, 0.0]
 ResetCamera(view)"""
 
 
+def _literal(value: str | list[str]) -> str:
+    """Text or texts in Python. JSON's escapes of signs beyond U+FFFF are others there, so they stay as they are."""
+    return json.dumps(value, ensure_ascii=False)
+
+
 def script(result: ResultData, stem: str, saved: Sequence[int], *, solid: bool) -> str:
     """The script that shows ``<stem>.pvd``, which lies beside it.
 
@@ -122,11 +127,11 @@ def script(result: ResultData, stem: str, saved: Sequence[int], *, solid: bool) 
     return _TEMPLATE.format(
         name=stem,
         title=" ".join(result.study.title.split()).replace("\\", "/").replace('"', "'"),
-        title_text=json.dumps(result.study.title),
-        stem=json.dumps(stem),
+        title_text=_literal(result.study.title),
+        stem=_literal(stem),
         low=round(low, 2),
         high=round(max(high, low + 0.01), 2),
-        regions=json.dumps(list(result.study.section.regions)),
+        regions=_literal(list(result.study.section.regions)),
         colours=json.dumps(COLOURS),
         steps="\n".join(steps),
         clock='"{time:.0f} s"',
