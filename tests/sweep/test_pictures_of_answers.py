@@ -18,6 +18,7 @@ import tyrefem as tf
 from tyrefem.reports.sweep import cell
 from tyrefem.reports.sweep_answer_figures import indices, tornado
 from tyrefem.reports.sweep_figures import curves, pareto
+from tyrefem.reports.template import rendered
 from tyrefem.sweep.sweep import sweep
 from tyrefem.variants.plan import plan_of
 
@@ -101,3 +102,12 @@ def test_every_picture_has_its_own_file_and_every_name_its_signs(tmp_path: Path)
     assert sorted(shown) == sorted((tmp_path / "pictures" / file).read_bytes() for file in files)
     drawn = curves(design.swept, "drive.speed [mph]", "TC Left_degC")
     assert drawn.texts[0].get_text() == "TC Left over speed"
+
+
+def test_the_page_says_how_many_failures_it_leaves_out() -> None:
+    empty = {"how": "", "interrupted": "", "numbers": [], "parts": [], "variants": None, "assumed": [], "versions": {}}
+    values = {"study": SimpleNamespace(name="tyre", title="tyre"), "title": "tyre", "explored": None, **empty}
+    for count, left in ((30, []), (32, ["and 2 more"])):
+        page = rendered("sweep.html", failed={f"v{n}": "burst" for n in range(count)}, **values)
+        assert page.count(": burst") == 30
+        assert re.findall(r"and \d+ more", page) == left
