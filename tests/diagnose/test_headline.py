@@ -38,7 +38,7 @@ from tyrefem.diagnose.words.result_tables import rms_table
 from tyrefem.diagnose.words.sentences import noise_words, verdict_words
 from tyrefem.diagnose.words.support import alone_words, stated_words, support_words
 from tyrefem.measured import MeasuredRun
-from tyrefem.reports.diagnosis import page
+from tyrefem.reports.diagnosis import _numbers, page
 from tyrefem.reports.diagnosis_figures import pictures, probabilities_figure, rms_figure
 from tyrefem.reports.diagnosis_gap import AFTER
 from tyrefem.reports.diagnosis_summary import (
@@ -570,3 +570,13 @@ def test_the_picture_of_probabilities_marks_the_set_of_the_study_and_none_of_its
             ]
         )
     assert marked == [["hot-road + sun"], ["hot-road", "sun"]]
+
+
+def test_noise_is_no_smallest_rms_where_a_study_comes_nearer() -> None:
+    """Sensors may state more noise than their readings have."""
+    for after, note in ((0.6, "smallest rms that a model can reach"), (0.1, "as their sensors state it")):
+        rms = {(False, False): 2.5, (True, False): after}
+        d: Any = SimpleNamespace(
+            rms=lambda *, after, held_out, rms=rms: rms.get((after, held_out), math.nan), noise=0.5, stated_noise=0.5
+        )
+        assert _numbers(d)[-1]["note"] == note

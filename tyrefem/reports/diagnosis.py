@@ -131,13 +131,15 @@ def page(d: DiagnosisData, images: Mapping[str, bytes], *, version: str) -> str:
 
 def _numbers(d: DiagnosisData) -> list[dict[str, str]]:
     """Root mean square deviations of fitted and held-out runs, original and amended."""
-    numbers = []
+    numbers, reached = [], math.inf
     for held_out, name in ((False, "fitted runs"), (True, "held-out runs")):
         before, after = (d.rms(after=after, held_out=held_out) for after in (False, True))
         if math.isfinite(before):
+            reached = min(reached, before, after)
             value = f"{before:.2f} → {after:.2f} K"
             numbers.append({"label": f"rms on {name}", "value": value, "note": "original → amended"})
-    note = "smallest rms that a model can reach"
+    # Readings may scatter less than their sensors state.
+    note = "smallest rms that a model can reach" if reached >= d.noise else "as their sensors state it"
     if abs(d.noise - d.stated_noise) > 0.01 * d.stated_noise:
         note = f"by the readings' scatter; stated: {d.stated_noise:.2f} K"
     return [*numbers, {"label": "noise of the readings", "value": f"{d.noise:.2f} K", "note": note}]
