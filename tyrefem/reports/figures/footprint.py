@@ -278,8 +278,8 @@ def inflation_figure(tyre: Inflation, name: str) -> Figure:
     for number, region in enumerate(body.parts):
         cells = moved[np.asarray(mesh.subdomains[region])]
         colour = FILLS[number % len(FILLS)]
-        shown = {"facecolors": colour, "edgecolors": "white", "lw": 0.3, "label": plain(region)}
-        axes.add_collection(PolyCollection(list(cells), **shown))
+        label = plain(region)
+        axes.add_collection(PolyCollection(list(cells), facecolors=colour, edgecolors="white", lw=0.3, label=label))
     edges = ((moved, INK, "-", f"inflated, {tyre.pressure / 1e3:.0f} kPa"), (free, QUIET, (0, (4, 1.5)), "undeformed"))
     for shape, colour, dashes, label in edges:
         axes.add_collection(LineCollection(_outline(mesh, shape), colors=colour, lw=1.1, ls=dashes, label=label))
