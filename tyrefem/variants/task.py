@@ -115,7 +115,8 @@ def bundle(study: StudyData) -> Bundle:
     cards = hashlib.sha256(json.dumps(loaded, sort_keys=True, default=str).encode()).hexdigest()
     data["section"] = _packed("section", data["section"], near, files, paths)
     data["materials"] = {
-        region: _packed("material", reference, near, files, paths) for region, reference in data.get("materials", {}).items()
+        region: _packed("material", reference, near, files, paths)
+        for region, reference in data.get("materials", {}).items()
     }
     mesh = data.get("mesh", {})
     if isinstance(mesh.get("file"), str):
