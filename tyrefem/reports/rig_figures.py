@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -20,6 +19,7 @@ from tyrefem.reports.figures.style import (
     TITLE,
     add_axes,
     figure,
+    line_style,
     plain,
     png,
     short,
@@ -45,8 +45,7 @@ def pictures(identification: IdentificationData) -> dict[str, bytes]:
     """File name -> PNG: ``residuals-RUN``, ``intervals``, ``correlation``."""
     drawn = {}
     for test in identification.tests:
-        name = re.sub(r"[^\w.-]+", "-", test.name).strip("-.") or "run"
-        drawn[f"residuals-{name}.png"] = png(residuals(identification, test.name))
+        drawn[f"residuals-{test.name}.png"] = png(residuals(identification, test.name))
     drawn["intervals.png"] = png(intervals(identification))
     drawn["correlation.png"] = png(correlation(identification))
     return drawn
@@ -199,8 +198,8 @@ def histories(
     for number, sensor in enumerate(sensors):
         axes = add_axes(drawn, 0.6 + 3.4 * number, 0.5, 2.65, 2.5)
         tidy(axes)
-        for color, (name, (times, values)) in zip(PALETTE, runs.items(), strict=False):
-            axes.plot(times / 60, values[:, number], color=color, lw=1.4, label=short(name, 16))
+        for place, (name, (times, values)) in enumerate(runs.items()):
+            axes.plot(times / 60, values[:, number], lw=1.4, label=short(name, 16), **line_style(place))
         axes.set_title(short(sensor, 24), fontsize=FONT, color=INK, loc="left")
         axes.set_xlabel("time [min]", fontsize=FONT)
         axes.set_xlim(0, phases.end / 60)

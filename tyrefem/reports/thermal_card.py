@@ -76,7 +76,7 @@ def words(identified: LumpedIdentification) -> str:
 
 def _figure(identified: LumpedIdentification) -> Any:
     """Computed over measured: plateaus on the left, times on the right, with two standard deviations."""
-    from tyrefem.reports.figures.style import FONT, INK, PALETTE, TITLE, add_axes, figure, tidy, title
+    from tyrefem.reports.figures.style import FONT, INK, PALETTE, TITLE, add_axes, figure, plain, tidy, title
 
     drawn = figure(9.0, 3.8 + TITLE)
     names = list(identified.card.bodies)
@@ -98,7 +98,7 @@ def _figure(identified: LumpedIdentification) -> Any:
         axes.set_title("plateaus" if unit == "degC" else "times: o warm-up, □ cool-down", fontsize=FONT, loc="left")
         tidy(axes)
     for place, name in enumerate(names):
-        drawn.text(0.62 + 0.12 * (place % 3), 0.965 - 0.04 * (place // 3), f"● {name}", fontsize=FONT,
+        drawn.text(0.62 + 0.12 * (place % 3), 0.965 - 0.04 * (place // 3), plain(f"● {name}"), fontsize=FONT,
                    color=PALETTE[place % len(PALETTE)])  # fmt: skip
     title(
         drawn, "Lumped tyre: computed over measured", f"bars: two standard deviations; misfit {identified.misfit:.2f}"
