@@ -117,7 +117,7 @@ def simulate(
 
             raise InputError(f"unknown number '{name}'{nearest(name, known)}", field="values")
     numbers = {**known, **(values or {})}
-    beyond = max(0.0, *(-numbers[clock_of(name)] for name in card.runs))
+    beyond = max((0.0, *(-numbers[clock_of(name)] for name in card.runs)))
     twin, clock = Twin(card, sensors, fineness or USUAL), Clock(card.phases, card.phases.end, beyond)
     times = np.arange(0.0, card.phases.end + every / 2, every)
     times = times[times <= card.phases.end]
