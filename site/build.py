@@ -32,6 +32,9 @@ FOLDERS = ("howto", "reference", "about", "static", "templates")
 #: Folders whose files sphinx-gallery runs.
 EXECUTED = ("gallery", "verification")
 LINK = re.compile(r"\]\(([^)\s#:]+)(?:#[^)\s]*)?\)")
+#: Pages of the site that the README leads to: their links hold in the repository, and are changed as they are copied.
+READ_IN_PLACE = "howto"
+EXAMPLE = re.compile(r"(\]\(\.\./gallery/[^)\s]+)\.py\)")
 
 
 def pages_of_repository(root: Path = ROOT) -> list[Path]:
@@ -46,6 +49,13 @@ def linked_files(page: Path, folder: Path) -> set[Path]:
     return {file for file in files if file.is_relative_to(ROOT)}
 
 
+def as_copied(place: Path, file: Path) -> bytes:
+    """A file as it lies in the source folder, where `docs` is beside `howto`, and examples are pages."""
+    if place.parts[0] != READ_IN_PLACE or file.suffix != ".md":
+        return file.read_bytes()
+    return EXAMPLE.sub(r"\1.rst)", file.read_text(encoding="utf-8").replace("](../../", "](../")).encode()
+
+
 def sources() -> dict[Path, Path]:
     """Every file of the site: place in the source folder -> file."""
     pages = pages_of_repository()
@@ -53,7 +63,11 @@ def sources() -> dict[Path, Path]:
     places = [SITE.glob("*.md"), *((SITE / name).rglob("*") for name in FOLDERS)]
     placed = {file.relative_to(SITE): file for files in places for file in files if file.is_file()}
     # A page of the site lies in the source folder as if this folder were the repository.
-    linked = [linked_files(file, (ROOT / place).parent) for place, file in placed.items() if file.suffix == ".md"]
+    linked = [
+        linked_files(file, file.parent if place.parts[0] == READ_IN_PLACE else (ROOT / place).parent)
+        for place, file in placed.items()
+        if file.suffix == ".md"
+    ]
     linked += [linked_files(page, page.parent) for page in pages]
     files = {*pages, *(file for each in linked for file in each if not file.is_relative_to(SITE))}
     return placed | {file.relative_to(ROOT): file for file in files}
@@ -65,10 +79,10 @@ def assemble(source: Path) -> None:
     before = set(record.read_text(encoding="utf-8").splitlines()) if record.is_file() else set()
     placed = sources()
     for place, file in placed.items():
-        copy = source / place
-        if not copy.is_file() or copy.read_bytes() != file.read_bytes():
+        copy, content = source / place, as_copied(place, file)
+        if not copy.is_file() or copy.read_bytes() != content:
             copy.parent.mkdir(parents=True, exist_ok=True)
-            shutil.copyfile(file, copy)
+            copy.write_bytes(content)
     for place in before - {place.as_posix() for place in placed}:
         (source / place).unlink(missing_ok=True)
     # What sphinx-gallery made of an example that has gone or moved.

@@ -60,11 +60,20 @@ def options(name: str, command: Any) -> list[str]:
             shown.append(label if each.required else f"[{label}]")
         elif each.name not in (*EVERYWHERE, "help") and not each.hidden:
             names = ", ".join(f"`{flag}`" for flag in (*each.opts, *each.secondary_opts))
-            rows.append(f"| {names} | {plain(each.help)} |")
+            rows.append(f"| {names} | {plain(each.help)}{without_it(each)} |")
     paragraphs = [plain(part) for part in re.split(r"\n\s*\n", command.help or "")[1:] if part.strip()]
     usage = " ".join(["tyrefem", name, *shown, *(["[OPTIONS]"] if rows else [])])
     lines = [f"{first_line(command)}", "", *(text for part in paragraphs for text in (part, "")), f"`{usage}`"]
     return lines + (["", "| option | meaning |", "|---|---|", *rows] if rows else [])
+
+
+def without_it(option: Any) -> str:
+    """What holds without an option, where its help does not say so."""
+    if option.required:
+        return " Required."
+    default = option.default
+    stated = isinstance(default, bool) or default in (None, (), []) or "default" in (option.help or "").lower()
+    return "" if stated else f" Default: {plain(str(default))}."
 
 
 def plain(text: str | None) -> str:

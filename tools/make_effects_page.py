@@ -49,6 +49,9 @@ the [table](evidence/tables/effect-parameters.csv). A *shape* does nothing while
 judgement, not a measurement. Pictures show what one sd changes in the readings of `example-validation` (22x5.5 8PR,
 2700 lbf, 83 psi, 20 mph for 600 s, then at rest; noise of a thermocouple 0.5 K).
 
+Not on this page are `heat-shape`, `film-scale`, `missing-heat`, `missing-flux` and `missing-loss`. A diagnosis
+uses them for corrections and for heat of unknown origin; they state no cause. `tyrefem show effect NAME` explains each.
+
 ## An effect in some runs only
 
 Road, sun, water and air change from one day to the next. `runs` names the measured runs in which an effect acts:

@@ -1,4 +1,4 @@
-"""Draw the floors of the house and the walks through it as SVG: plain text, the same for the same walks."""
+"""Draw the layers of packages and the walks through them as SVG: plain text, the same for the same walks."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def picture(layers: Sequence[str], trails: Sequence[Trail]) -> str:
     drawn = [
         f"<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {WIDTH} {height}' width='{WIDTH}' height='{height}'>",
         f"<rect width='{WIDTH}' height='{height}' fill='white'/>",
-        _text(12, TOP - 18, "floors, people at the top", 13, QUIET),
+        _text(12, TOP - 18, "layers of packages, what people see at the top", 13, QUIET),
         *_floors(floors),
     ]
     for number, trail in enumerate(trails):

@@ -1,4 +1,4 @@
-"""The house stands on its floors: a room imports only from rooms below it, in functions and for typing too."""
+"""A package imports only from the layers below its own, in functions and for typing too."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def test_every_room_says_what_it_is_for() -> None:
 
 def test_the_page_draws_the_floors_as_they_are() -> None:
     page = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
-    floors = page.partition("## The floors")[2].partition("\n## ")[0]
+    floors = page.partition("## The layers")[2].partition("\n## ")[0]
     drawn = re.findall(r"^\| \d+ \| (.+?) \|", floors, re.M)
     named = [re.findall(r"`([\w]+)`", cell) for cell in drawn]
     assert named == [layer.split(" | ") for layer in LAYERS]
@@ -78,5 +78,5 @@ def test_the_page_draws_the_floors_as_they_are() -> None:
 def test_the_page_names_the_rooms_of_the_diagnosis_in_their_order() -> None:
     layers = next(contract["layers"] for contract in CONTRACTS if contract.get("containers") == ["tyrefem.diagnose"])
     page = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
-    rooms = page.partition("## The rooms of the diagnosis")[2].partition("\n## ")[0]
+    rooms = page.partition("## The packages of the diagnosis")[2].partition("\n## ")[0]
     assert re.findall(r"`([\w]+)`", "".join(re.findall(r"^\| (`.+?) \|", rooms, re.M))) == layers

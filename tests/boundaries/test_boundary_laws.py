@@ -88,6 +88,16 @@ def test_a_gas_at_absolute_zero_has_no_pressure(name, field):
         tf.study("nasa-22x5.5-8pr", {"boundaries.contained_air": {"law": name, field: "0 K"}})
 
 
+def test_a_held_gas_has_no_initial_temperature():
+    held = {"law": "held", "temperature": "30 degC"}
+    plain, both = (
+        tf.study("nasa-22x5.5-8pr", {"boundaries.contained_air": {**held, **more}})
+        for more in ({}, {"initial": "90 degC"})
+    )
+    (warning,) = set(both.warnings) - set(plain.warnings)
+    assert str(warning).endswith("boundaries.contained_air.initial: does not act: the gas keeps its 'temperature'")
+
+
 def conditions(**changes):
     return RollingTyre(tf.study("nasa-22x5.5-8pr").replace({k.replace("__", "."): v for k, v in changes.items()}))
 

@@ -109,3 +109,31 @@ def test_laying_changes_over_a_card_leaves_the_rest():
 def test_a_table_where_a_table_is_wanted(change: dict[str, object], message: str) -> None:
     with pytest.raises(InputError, match=message):
         study("nasa-22x5.5-8pr", change)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"cords": {"lift": "maybe"}}, "cords.lift: must be true or false, not 'maybe'$"),
+        ({"cords": {"plies": "two"}}, "cords.plies: must be a whole number, not 'two'$"),
+        ({"cords": {"plies": 1.5}}, "cords.plies: must be a whole number, not 1.5$"),
+        ({"softening": {"law": "table", "table": "x", "source": "t"}}, "^softening.table: must be a list"),
+        ({"elasticity": {"c40": "1 MPa"}}, "^elasticity: unknown key 'c40'"),
+    ],
+)
+def test_errors_name_the_keys_of_the_file_and_what_is_allowed(change: dict[str, object], message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        MaterialCard.check(merged(library.load("material", "passenger-belt")[0], change))
+
+
+@pytest.mark.parametrize("value", ["9" * 5000, "[" * 3000 + "]" * 3000], ids=["digits", "lists"])
+def test_a_file_that_the_parser_gives_up_is_an_error_of_the_file(tmp_path, value):
+    file = tmp_path / "odd.toml"
+    file.write_text(f"a = {value}\n")
+    with pytest.raises(InputError, match=r"odd\.toml: not valid TOML"):
+        read_toml(file)
+
+
+def test_a_raised_digit_is_no_number_of_an_entry():
+    with pytest.raises(InputError, match="layers: no entry '²'; allowed: liner"):
+        merged({"layers": [{"name": "liner"}]}, {"layers": {"²": {"name": "ply"}}})

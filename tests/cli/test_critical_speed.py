@@ -9,7 +9,10 @@ from pathlib import Path
 
 import pytest
 
+import tyrefem as tf
 from tyrefem.cli import main
+from tyrefem.cli.critical_speed import _words
+from tyrefem.mechanics.rolling.critical_speed import CriticalSpeed
 
 STUDY = "nasa-22x5.5-8pr"
 COARSE = ["--set", "mesh.size=16 mm"]
@@ -37,6 +40,13 @@ def test_a_drive_beyond_it_gets_a_warning(here: Path, capfd: pytest.CaptureFixtu
     line = ["press", STUDY, "--critical-speed", "--set", "drive.speed=100 m/s", "--no-pictures", *COARSE]
     assert main(line) == 0
     assert "warning: the drive's 100 m/s are above the critical speed of" in capfd.readouterr().out
+
+
+def test_a_tyre_that_tears_first_may_have_waves() -> None:
+    """At 22 bar this tyre has no equilibrium from some 130 m/s on: no shape was looked at up to 200 m/s."""
+    torn = CriticalSpeed(tf.study(STUDY), 2.2e6, None, None, None, 138.0, 10)
+    (line,) = [line for line in _words([torn]).splitlines() if "kPa" in line]
+    assert "none, or no equilibrium, below 200 m/s" in line
 
 
 @pytest.mark.parametrize(

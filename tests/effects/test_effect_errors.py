@@ -69,6 +69,9 @@ class Draught(Effect):
 '''
 
 
+HEAT = {"name": "missing-heat", "width": "10 mm", "heat": "50 kW/m**3"}
+
+
 @pytest.fixture
 def study() -> tf.Study:
     """Six sensors on a coarse mesh."""
@@ -102,6 +105,10 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         ({"name": "brake-power", "power": "1 kW"}, "only a lumped rim takes up heat; use 'brake-heat'"),
         ({"name": "camber", "angle": "1 deg"}, "needs the full section: [mesh] section = 'full'"),
         ({"name": "yaw", "slip": "1 %"}, "needs the full section"),
+        ({"name": "missing-loss", "region": "tred", "gain": 0.5}, "has no region 'tred'; did you mean 'tread'?"),
+        ({**HEAT, "station": "60 mm", "region": "tred"}, "has no region 'tred'; did you mean 'tread'?"),
+        ({**HEAT, "station": "60 m"}, "station 60,000 mm lies beyond the meridian, which ends 147.8 mm from the crown"),
+        ({"name": "missing-flux", "station": "6 m", "width": "9 mm"}, "station 6,000 mm lies beyond the meridian"),
     ],
 )
 def test_a_wrong_entry_is_refused(study: tf.Study, effect: Any, words: str) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import tyrefem
-from tyrefem.errors import InputError
+from tyrefem.errors import InputError, ResultWarning
 from tyrefem.fatigue.life import LifeData, check, life
 from tyrefem.fatigue.matrix_cycle import STEPS, MatrixCycle
 from tyrefem.fatigue.places import APART, first_places
@@ -174,6 +174,22 @@ def test_no_card_with_fatigue_is_refused() -> None:
 def test_a_tyre_at_rest_has_no_life() -> None:
     with pytest.raises(InputError, match="never rolls"):
         life(tyre(drive__speed="0 mph"), temperature=60.0)
+
+
+def test_a_change_that_the_drive_cannot_take_is_left_out(at_60: LifeData) -> None:
+    """10 % more than 380 m/s is beyond what a drive may have; the other changes stay."""
+    fast = replace(at_60, study=tyre(drive__speed="380 m/s"))
+    with pytest.warns(ResultWarning, match=r"speed \+ 10 % is left out: '418 m/s' is out of range"):
+        made = shifts(fast, ("speed", "ambient"))
+    assert [shift.change for shift in made] == ["ambient + 10 K"]
+
+
+def test_more_deflection_is_not_more_load(at_60: LifeData) -> None:
+    study = tyre()
+    drive = {key: value for key, value in study.data["drive"].items() if key != "load"}
+    pressed = replace(at_60, study=study.replace({"drive": {**drive, "deflection": "20 mm"}}))
+    (shift,) = shifts(pressed, ("load",))
+    assert shift.change == "deflection + 10 %"
 
 
 def test_large_motion_takes_the_gradient_of_the_balance() -> None:

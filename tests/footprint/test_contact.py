@@ -232,6 +232,12 @@ def test_a_slight_deflection_is_not_without_load(tyre: Pressing) -> None:
     assert tyre.solve(deflection=0.0).load == 0.0
 
 
+def test_a_load_too_slight_to_resolve_is_not_called_too_heavy(tyre: Pressing) -> None:
+    with pytest.raises(InputError, match="does not settle under 1e-06 N with 24 harmonics") as caught:
+        tyre.at_load(1e-6, 24)
+    assert caught.value.field == "load"
+
+
 def test_a_tyre_is_not_pressed_past_the_axis_of_its_drum(tyre: Pressing) -> None:
     """Beyond it the drum's far side would push the tyre out: loads fall, and change their sign."""
     small = Pressing(tyre.state, Road(drum_diameter=0.06))

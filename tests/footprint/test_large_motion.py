@@ -16,6 +16,7 @@ from tyrefem.mechanics.footprint.example_tyre import PlainTyre
 from tyrefem.mechanics.footprint.footprint import Footprint
 from tyrefem.mechanics.footprint.harmonic_balance import Balance
 from tyrefem.mechanics.footprint.nonlinear import NonlinearForces
+from tyrefem.mechanics.footprint.road import Road
 from tyrefem.mechanics.solid.body_law import BodyLaw
 from tyrefem.mechanics.solid.compounds import Compound
 from tyrefem.mechanics.solid.inflation import Inflation, inflate
@@ -151,3 +152,14 @@ def test_stiffness_is_the_slope_between_two_deflections_and_far_less_than_linear
 def test_more_than_the_tyre_can_carry(pressing: Pressing) -> None:
     with pytest.raises(InputError, match=r"cannot carry 12010 N: the crown meets the rim at .* mm\)"):
         Balance(pressing, 8, before_rim=0.1).at_load(12010.0)
+
+
+def test_a_deflection_beyond_what_large_motion_reaches_is_refused() -> None:
+    """The last thousandth before the crown meets the rim; a small drum ends before that."""
+    tyre = Pressing(PlainTyre().state(along=6))
+    with pytest.raises(InputError, match=r"is too near 100\.99 mm, where the crown meets the rim") as caught:
+        Balance(tyre, 8, 8).at_deflection(0.9995 * tyre.bottoming)
+    assert caught.value.field == "deflection"
+    drum = Pressing(tyre.state, Road(drum_diameter=0.15))
+    with pytest.raises(InputError, match=r"cannot carry 1e\+05 N: the tyre meets the drum's axis at"):
+        Balance(drum, 10, 10, before_rim=0.2).at_load(1e5)

@@ -16,6 +16,7 @@ from tyrefem.errors import InputError
 from tyrefem.lumped.card import ThermalCard
 from tyrefem.lumped.identification import LumpedIdentification, identify
 from tyrefem.lumped.network import LumpedNetwork
+from tyrefem.reports.thermal_card import write_files
 
 pytestmark = pytest.mark.fast
 
@@ -197,3 +198,41 @@ def test_readings_that_no_tyre_has_are_refused_with_the_worst() -> None:
         InputError, match=r"cannot have what was measured; worst: run '.*', plateau of gas, measured 95"
     ):
         identify(shipped({"runs": {str(n): {"plateau": {"gas": "95 degC"}} for n in range(5)}}))
+
+
+def test_a_share_of_the_heat_below_nothing_is_refused() -> None:
+    """Plateaus of bodies with shares 0.6, 0.6 and -0.2 fit without misfit; no body takes heat away."""
+    films = [{"between": [name, "air"], "conductance": "5 W/K"} for name in "abc"]
+    films += [{"between": [name, "c"], "conductance": "20 W/K"} for name in "ab"]
+    shares = {"a": {"heat_share": 0.4}, "b": {"heat_share": 0.4}, "c": {"heat_share": 0.2}}
+    data = BODY | {"bodies": shares, "films": films, "identify_shares": True}
+    rest = {"speed": "10 m/s", "air": "20 degC", "plateau": {"a": "30 degC"}}
+    runs = [{"name": str(force), "rolling_resistance": f"{force} N", **rest} for force in (40, 60)]
+    for given, refused in (((0.6, 0.6, -0.2), True), ((0.5, 0.3, 0.2), False)):
+        card = ThermalCard.check(data | {"runs": runs})
+        conductances = np.array([5.0, 5.0, 5.0, 20.0, 20.0])
+        network = LumpedNetwork(card, np.ones(3), conductances, np.zeros(5), np.array(given))
+        plateaus = [dict(zip("abc", map("{} degC".format, network.plateau(run)), strict=True)) for run in card.runs]
+        measured = [run | {"plateau": plateau} for run, plateau in zip(runs, plateaus, strict=True)]
+        card = ThermalCard.check(data | {"runs": measured})
+        if refused:
+            with pytest.raises(InputError, match=r"bodies\.c\.heat_share: comes out as -0\.2, less than no heat"):
+                identify(card)
+        else:
+            assert numbers(identify(card))["heat share a"][0] == pytest.approx(0.5, rel=1e-4)
+
+
+def test_two_films_of_one_name_are_refused() -> None:
+    """Their numbers would have one place in thermal-card.toml."""
+    bodies = {"tyre": {"heat_share": 1.0}, "a": {}, "b-c": {}, "a-b": {}, "c": {}}
+    films = [{"between": pair} for pair in (["tyre", "air"], ["a", "b-c"], ["a-b", "c"])]
+    with pytest.raises(InputError, match=r"films\.2\.between: 'a-b-c' is the name of another film"):
+        ThermalCard.check(BODY | {"bodies": bodies, "films": films})
+
+
+def test_names_of_bodies_are_no_formulas(tmp_path: Path) -> None:
+    name = "$\\frac$"
+    run = BODY["runs"][0] | {"plateau": {name: "70 degC"}, "warm_up": {name: "600 s"}}
+    data = BODY | {"bodies": {name: {"heat_share": 1.0}}, "films": [{"between": [name, "air"]}], "runs": [run]}
+    write_files(identify(ThermalCard.check(data)), tmp_path / "out")
+    assert (tmp_path / "out" / "thermal-card.png").is_file()

@@ -85,10 +85,16 @@ def test_beside_a_law_of_temperature_a_series_gives_the_ratio_only() -> None:
 @pytest.mark.parametrize(
     ("frequency", "loss", "message"),
     [
-        ({"law": "power", "exponent": 0.1}, {}, r"frequency.power.source: missing"),
+        ({"law": "power", "exponent": 0.1}, {}, r"^loss_tangent\.frequency\.source: missing"),
         ({"law": "power", "exponent": 3.0, "source": "t"}, {}, "exponent"),
         ({"law": "power", "exponent": 0.1, "source": "t"}, {"law": "frequency"}, "needs the table 'frequency'"),
-        ({"law": "table", "table": [["9 Hz", 0.1], ["3 Hz", 0.2]], "source": "t"}, {}, "frequencies must rise"),
+        (
+            {"law": "table", "table": [["9 Hz", 0.1], ["3 Hz", 0.2]], "source": "t"},
+            {},
+            r"^loss_tangent\.frequency\.table: frequencies must rise",
+        ),
+        ({"law": "table", "table": "x", "source": "t"}, {}, r"^loss_tangent\.frequency\.table: must be a list"),
+        ({"law": "table", "tabel": [], "source": "t"}, {}, r"^loss_tangent\.frequency: unknown key 'tabel'"),
         ({**PRONY, "series": [["1 MPa"]]}, {}, r"series.0: row must be \[modulus, time\]"),
         ({**PRONY, "series": [["1 MPa", "-1 s"]]}, {}, "series.0"),
         ({"law": "pronny", "source": "t"}, {}, "did you mean 'prony'"),

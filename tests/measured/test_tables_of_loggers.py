@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from tyrefem.errors import InputError
@@ -240,3 +241,33 @@ def warming(readings: dict[int, float]) -> str:
 )  # fmt: skip
 def test_spikes_of_a_logger_have_a_note(tmp_path: Path, readings: dict[int, float], note: list[str]) -> None:
     assert list(only(tmp_path, warming(readings)).notes) == note
+
+
+#: Heading of a TOA5 table, as Campbell Scientific's loggers write it.
+TOA5 = (
+    '"TOA5","CR1000X","CR1000X","12345","CR1000X.Std.04.02","CPU:tyre.CR1X","4321","Table1"\n'
+    '"TIMESTAMP","RECORD","crown, inner","shoulder"\n"TS","RN","Deg C","deg F"\n"","","Smp","Avg"\n'
+)
+
+
+def test_a_toa5_table_has_its_units_below_its_names(tmp_path: Path) -> None:
+    readings = '"2026-05-01 10:00:00",0,25.1,77\n"2026-05-01 10:00:10.5",1,26.1,"NAN"\n'
+    run = only(tmp_path, TOA5 + readings)
+    np.testing.assert_allclose(run.times, [0, 10.5])
+    np.testing.assert_allclose(run.temperatures["crown, inner"], [25.1, 26.1])
+    np.testing.assert_allclose(run.temperatures["shoulder"], [25, np.nan])
+    assert (run.channels, run.comments[0][:12]) == (("RECORD [RN]",), "TOA5,CR1000X")
+
+
+def test_a_toa5_table_counts_lines_as_in_its_file_and_names_an_unknown_unit(tmp_path: Path) -> None:
+    assert "line 6, column 'crown, inner [Deg C]'" in refused(
+        tmp_path, TOA5 + '"2026-05-01 10:00:00",0,25.1,77\n"2026-05-01 10:00:10",1,warm,78\n'
+    )
+    millivolts = TOA5.replace('"Deg C"', '"mV"') + '"2026-05-01 10:00:00",0,25.1,77\n'
+    assert "line 2: unknown temperature unit 'mV'" in refused(tmp_path, millivolts)
+
+
+def test_the_first_reading_of_a_toa5_table_without_kinds_is_kept(tmp_path: Path) -> None:
+    without = TOA5.replace('"","","Smp","Avg"', '"","","",""')
+    rows = '"2026-05-01 10:00:00",0,25.1,77\n"2026-05-01 10:00:10",1,26.1,77\n'
+    assert only(tmp_path, without + rows).times.tolist() == [0, 10]

@@ -44,6 +44,8 @@ MORE = {
 #: Command -> commands that come before it on its page.
 FIRST = {
     "tyrefem check studies/my-tyre": ["tyrefem new study my-tyre"],
+    "tyrefem check studies/205-60r15": ["tyrefem new study 205/60R15"],
+    "tyrefem check plugins/lamp.py": ["tyrefem new effect lamp"],
     "tyrefem check plugins/arrhenius.py": ["tyrefem new tan-delta-law arrhenius"],
     "tyrefem run results/soft/study.toml": [
         shlex.join(["tyrefem", "modes", "nasa-22x5.5-8pr", *COARSE["nasa-22x5.5"], "--out", "results/soft"])

@@ -15,7 +15,10 @@ from tyrefem.cli import app
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = sorted((ROOT / "docs").rglob("*.md"))
-TEXTS = [*PAGES, ROOT / "README.md"]
+#: Pages of the site that the README leads to, read where they are.
+HOWTO = sorted(page for page in (ROOT / "site" / "howto").glob("*.md") if page.stem != "index")
+TEXTS = [*PAGES, ROOT / "README.md", *HOWTO]
+LINKED = [*TEXTS, ROOT / "CHANGELOG.md", ROOT / "CONTRIBUTING.md", *sorted(ROOT.glob("studies/*/README.md"))]
 SHELL = re.compile(r"^```(?:sh|bash|console)\n(.*?)^```", re.DOTALL | re.MULTILINE)
 BEGINNING = re.compile(r"# .+\n\n([A-Z`](?:[^\n]+\n)+)\n```sh\n(?:(?!```).*\n)+```\n\n(!\[.+)")
 PICTURE = re.compile(r"!\[([^\]]+)\]\(([^)\s]+)\)")
@@ -89,7 +92,7 @@ def test_a_page_begins_with_purpose_command_and_picture(page: Path) -> None:
     assert shell_commands(page), "the shell block has a command"
 
 
-@pytest.mark.parametrize("page", TEXTS, ids=lambda page: page.relative_to(ROOT).as_posix())
+@pytest.mark.parametrize("page", LINKED, ids=lambda page: page.relative_to(ROOT).as_posix())
 def test_every_relative_link_leads_somewhere(page: Path) -> None:
     broken = []
     for target in LINK.findall(prose(page)):

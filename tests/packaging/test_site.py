@@ -72,6 +72,23 @@ def test_howto_pages_stand_in_their_contents() -> None:
     assert {page.stem for page in (SITE / "howto").glob("*.md")} - {"index"} == listed - {":maxdepth: 1"}
 
 
+def test_links_of_howto_pages_lead_to_pages_of_the_site() -> None:
+    """They hold in the repository (test_docs_pages.py), and, as copied, in the source folder of Sphinx."""
+    build = module(SITE / "build.py")
+    places = build.sources()
+    pages = {ROOT / place for place in places} | {
+        (ROOT / file.relative_to(SITE)).with_suffix(".rst") for file in GALLERY
+    }
+    dead = [
+        f"{place}: {target}"
+        for place, file in places.items()
+        if place.match("howto/*.md") and place.stem != "index"
+        for target in build.LINK.findall(build.as_copied(place, file).decode())
+        if (ROOT / place.parent / target).resolve() not in pages
+    ]
+    assert dead == []
+
+
 @pytest.mark.parametrize("example", GALLERY, ids=relative)
 def test_an_example_is_one_screen_with_a_figure_and_an_assertion(example: Path) -> None:
     text = example.read_text(encoding="utf-8")

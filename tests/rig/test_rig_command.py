@@ -5,7 +5,9 @@ from __future__ import annotations
 import json
 import re
 from pathlib import Path
+from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from tyrefem.cli import main
@@ -15,6 +17,7 @@ from tyrefem.heating_test.layer_study import merged, study
 from tyrefem.heating_test.readings import matched
 from tyrefem.materials.card import material
 from tyrefem.measured import read_table
+from tyrefem.reports import rig_figures
 from tyrefem.reports.rig import save_layers
 from tyrefem.rig import load, simulate
 
@@ -82,6 +85,30 @@ def test_layers_merge_to_the_same_mass_heat_and_resistance() -> None:
             lambda layer: layer.thickness / layer.conductivity.value,
         ):
             assert sum(map(sums, fewer.layers)) == pytest.approx(sum(map(sums, card.layers)))
+
+
+def test_a_merged_layer_is_as_uncertain_as_the_less_certain_one() -> None:
+    """Whichever of the two comes first."""
+    card, _ = load("trtlab")
+    first, second = card.layers
+    sure = first.model_copy(update={"conductivity": first.conductivity.model_copy(update={"relative_sd": 0.05})})
+    for pair in ((sure, second), (second, sure)):
+        (layer,) = merged(card.model_copy(update={"layers": pair}), 1).layers
+        assert layer.conductivity.relative_sd == 0.5
+
+
+def test_every_run_is_drawn_and_has_its_picture(monkeypatch: pytest.MonkeyPatch) -> None:
+    """More runs than colours; runs whose names differ only in signs."""
+    card, _ = load("trtlab")
+    times = np.arange(10.0)
+    runs = {f"run {number}": (times, np.full((10, 1), float(number))) for number in range(12)}
+    (axes,) = rig_figures.histories(card.phases, runs, ["outer"], dict.fromkeys(runs, 1.0)).axes
+    lines = [line for line in axes.lines if line.get_label().startswith("run")]
+    assert len({(line.get_color(), line.get_linestyle()) for line in lines}) == len(lines) == 12
+    for name in ("residuals", "intervals", "correlation", "png"):
+        monkeypatch.setattr(rig_figures, name, lambda *_: b"")
+    named = SimpleNamespace(tests=[SimpleNamespace(name=name) for name in ("a b", "a-b", "ü")])
+    assert {"residuals-a b.png", "residuals-a-b.png", "residuals-ü.png"} < set(rig_figures.pictures(named))
 
 
 def test_layer_study_improves_with_the_true_layers(tmp_path: Path) -> None:

@@ -10,12 +10,13 @@ import numpy as np
 import pytest
 from cases import measured, properties, truth
 
+from tyrefem.heating_test import identification as identification_module
+from tyrefem.heating_test.fit import Fitter
 from tyrefem.heating_test.grid import Fineness
 from tyrefem.heating_test.layer_study import _misfits
-from tyrefem.heating_test.parameters import at
+from tyrefem.heating_test.parameters import at, parameters_of
 from tyrefem.heating_test.readings import matched
 from tyrefem.heating_test.twin import Twin
-from tyrefem.reports.rig_figures import pictures
 from tyrefem.rig import Identification, RigCard, identify, load, simulate
 
 COARSE, MIDDLE = Fineness(2, 5, 2), Fineness(3, 7, 3)
@@ -169,6 +170,39 @@ def test_a_number_far_from_the_card_is_named() -> None:
     assert "standard deviations from the card's 0" in words
 
 
+def test_the_slopes_of_a_selection_are_those_of_the_fit(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Fit and selection that never agree: the words must not deny the slopes of the result, or name others."""
+    slope = ("tread.conductivity_slope",)
+    wanted = iter([slope, (), slope])
+    select = identification_module.select
+    monkeypatch.setattr(identification_module, "select", lambda *given: replace(select(*given), chosen=next(wanted)))
+    identification = of_itself(rig(heating=60.0, cooling=0.0))
+    fitted = tuple(estimate.name for estimate in identification.estimates if estimate.group == "slope")
+    assert identification.selection.chosen == fitted == ()
+    assert any(words.startswith("No property needs") for words in identification.words)
+
+
+def test_tests_may_have_different_sensors(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A sensor that only a later test has is computed, too."""
+    card = rig(runs=("low", "high"), heating=60.0, cooling=0.0)
+    done = simulate(card, every=10.0, fineness=COARSE)
+    tests = [
+        matched(card, done.runs["low"], ["outer", "interface"], ["inner"]),
+        matched(card, done.runs["high"], list(card.sensors)),
+    ]
+
+    def blocks(_card: RigCard, _file: object, fitter: Fitter, _linear: object) -> Any:
+        every = parameters_of(card, fitter.twin.sensors)
+        x = np.zeros(len(every))
+        return fitter.blocks(every, x, fitter.predict(every, x))
+
+    monkeypatch.setattr(identification_module, "_identified", blocks)
+    seen: Any = identification_module.identify(card, tests=tests, fineness=COARSE)
+    assert [block.series.sensor for block in seen] == ["outer", "interface", "outer", "inner", "interface"]
+    for block in seen:
+        assert np.abs(block.residual).max() < 3.0
+
+
 def test_a_short_test_has_no_misfit_after_its_transients() -> None:
     """All its readings are within 300 s of a switch of the laser."""
     card = rig(idle=0.0, heating=200.0, cooling=100.0)
@@ -176,10 +210,3 @@ def test_a_short_test_has_no_misfit_after_its_transients() -> None:
     early, late = _misfits(SimpleNamespace(card=card, fit=SimpleNamespace(blocks=[block])))
     assert early == 1.0
     assert np.isnan(late)
-
-
-def test_runs_of_like_names_have_each_a_picture() -> None:
-    card = rig(heating=60.0, cooling=30.0)
-    run = card.runs["high"]
-    twice = of_itself(card.model_copy(update={"runs": {"high 1": run, "high-1": run}}), linear=False)
-    assert {"residuals-high-1.png", "residuals-high-1-2.png"} < set(pictures(twice))

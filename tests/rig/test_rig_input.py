@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
+from tyrefem.cards import merged, read_toml
 from tyrefem.cli import main
 from tyrefem.errors import InputError
+from tyrefem.heating_test.card import RigCard
 from tyrefem.heating_test.files import find, tables
+from tyrefem.heating_test.layer_cards import bases
 from tyrefem.rig import load, read
 
 pytestmark = pytest.mark.fast
@@ -66,6 +70,44 @@ def test_impossible_rig(
     assert err.startswith("tyrefem: rig.toml: ")
     assert words in err
     assert not (here / "out").exists()
+
+
+CROWN = {"circumferential_radius": "43 mm", "lateral_radius": "43 mm"}
+IMPOSSIBLE_TABLES = [
+    ({"laser": {"spot_diameter": "100 mm"}, "patch": CROWN}, "^laser.spot_diameter: .* along its curved face"),
+    # 38 mm from the axis are 46.6 mm along the face.
+    ({"laser": {"spot_diameter": "76 mm"}, "patch": {**CROWN, "radius": "45 mm"}}, "^laser.spot_diameter"),
+    ({"patch": {"lateral_radius": "8 mm"}}, "^patch.lateral_radius: .* cannot have this curvature"),
+    ({"sensors": {"outer": {"depth_sd": "1 mm"}}}, "^sensors.outer.depth_sd: a camera measures a face"),
+    ({"sensors": {" in": {"instrument": "camera", "face": "inner", "noise": "1 K"}}}, "^sensors: ' in' is no name"),
+    ({"sensors": {"a\nb": {"instrument": "camera", "face": "inner", "noise": "1 K"}}}, "^sensors: .* line break"),
+]
+
+
+@pytest.mark.parametrize(("changes", "words"), IMPOSSIBLE_TABLES, ids=[row[1][:24] for row in IMPOSSIBLE_TABLES])
+def test_impossible_tables_of_a_card(changes: dict[str, Any], words: str) -> None:
+    with pytest.raises(InputError, match=words):
+        RigCard.check(merged(read_toml(find("trtlab")), changes))
+
+
+def test_a_spot_on_a_curved_patch_that_holds_it_is_possible() -> None:
+    data = merged(read_toml(find("trtlab")), {"laser": {"spot_diameter": "76 mm"}, "patch": CROWN})
+    assert RigCard.check(data).patch.along_face(38e-3) == pytest.approx(46.64e-3, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        (["tread=nasa-tread", "tread=nasa-carcass"], "a second card for layer 'tread': nasa-carcass"),
+        (["nasa-tread", "nasa-carcass"], "a second card for all layers: nasa-carcass"),
+    ],
+)
+def test_a_layer_has_a_single_base_card(given: list[str], words: str) -> None:
+    card, _ = load("trtlab")
+    with pytest.raises(InputError, match=f"--base: {words}"):
+        bases(card, given)
+    mixed = ["tread=nasa-tread", "nasa-carcass"]
+    assert bases(card, mixed) == bases(card, mixed[::-1]) == {"tread": "nasa-tread", "carcass": "nasa-carcass"}
 
 
 BAD = [

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import numpy as np
+import pandas as pd
 import pytest
 from cases import TIMES
 from curved_patch import CurvedPatch, TrueLayer, Truth
 from scipy.special import erfc
 
 from tyrefem.heating_test.clock import Clock, since_switch
-from tyrefem.heating_test.grid import Fineness, PatchGrid
+from tyrefem.heating_test.grid import Fineness, PatchGrid, graded
 from tyrefem.heating_test.parameters import at, parameters_of
-from tyrefem.heating_test.readings import view
+from tyrefem.heating_test.readings import matched, view
 from tyrefem.heating_test.twin import Twin
-from tyrefem.rig import Patch, PatchLayer, Property, load
+from tyrefem.measured import MeasuredRun
+from tyrefem.rig import Patch, PatchLayer, Property, load, simulate
 
 COARSE = Fineness(3, 6, 3)
 
@@ -127,6 +129,41 @@ def test_times_of_a_table_are_met_to_a_hundredth_of_a_kelvin() -> None:
     exact = np.where(s <= 1050, 100.0 * np.sqrt(np.maximum(s, 0) / 1050), 100.0 * np.exp(-(s - 1050) / 100))
     assert clock.matrix(wanted) @ rise == pytest.approx(exact, abs=0.01)
     assert clock.matrix(wanted).sum(axis=1) == pytest.approx(np.ones(7))
+
+
+def test_a_clock_that_is_early_has_its_last_readings_computed() -> None:
+    """A table until 200 s whose laser was switched on 12 s before: its last reading is that of 212 s, not of 200 s."""
+    card, _ = load("trtlab")
+    phases = card.phases.model_copy(update={"clock_sd": 5.0})
+    times = np.arange(0.0, 201.0, 10.0)
+    run = MeasuredRun("low", times, pd.DataFrame(dict.fromkeys(card.sensors, times)))
+    test = matched(card.model_copy(update={"phases": phases}), run, list(card.sensors))
+    since = test.series[0].at(-12.0) @ test.clock.times
+    assert since[times > 60.0] == pytest.approx(times[times > 60.0] + 12.0, abs=0.05)
+    assert test.clock.end == 200.0
+    assert matched(card, run, list(card.sensors)).clock.times[-1] == pytest.approx(200.0)
+    # Simulated, too: cooling goes on to the last reading.
+    short = card.phases.model_copy(update={"heating": 30.0, "cooling": 30.0})
+    early = {"low.clock": -25.0, "high.clock": 0.0}
+    done = simulate(card.model_copy(update={"phases": short}), every=10.0, values=early, fineness=Fineness(2, 5, 2))
+    last = done.runs["low"].temperatures["outer"].to_numpy()[-3:]
+    assert (np.diff(last) < -0.1).all()
+
+
+def test_a_warm_rim_is_reported_after_any_cooling() -> None:
+    """A patch of 12 mm is far too small, also if its rim is cold again at the end of the test."""
+    card, _ = load("trtlab")
+    update = {"patch": card.patch.model_copy(update={"radius": 0.012}), "runs": {"high": card.runs["high"]}}
+    for cooling in (0.0, 20_000.0):
+        phases = card.phases.model_copy(update={"heating": 300.0, "cooling": cooling})
+        small = card.model_copy(update={**update, "phases": phases})
+        (words,) = simulate(small, every=100.0, fineness=Fineness(2, 5, 2)).words
+        assert words.endswith("patch.radius should be larger.")
+
+
+def test_a_layer_may_have_a_single_element() -> None:
+    assert graded(7.0, 1, 1.0).tolist() == [0.0, 7.0]
+    assert PatchGrid.make(["rubber"], [0.01], 0.05, 0.0, 5e-3, Fineness(1, 1, 1)).depths.tolist() == [0.0, 0.01]
 
 
 def test_lag_of_a_ramp() -> None:

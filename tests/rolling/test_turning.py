@@ -110,6 +110,13 @@ def test_beyond_a_critical_speed_it_warns_and_beyond_all_it_refuses() -> None:
         press(study(mechanics__rolling=True, drive__speed="130 m/s"), deflection=0.02)
 
 
+@pytest.mark.parametrize("rolling", [False, True])
+def test_a_negative_speed_is_refused(rolling: bool) -> None:
+    with pytest.raises(InputError, match="must be at least 0 m/s, not -3 m/s") as caught:
+        press(study(mechanics__rolling=rolling), speed=-3.0)
+    assert caught.value.field == "speed"
+
+
 def test_other_strain_laws_do_not_turn() -> None:
     with pytest.raises(InputError, match='rolling: needs strain = "fem"'):
         tf.study("nasa-22x5.5-8pr", {"mechanics.rolling": True}).card  # noqa: B018

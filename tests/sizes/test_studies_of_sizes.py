@@ -103,3 +103,16 @@ def test_a_study_of_a_size_is_saved_and_packed(sized: Study, tmp_path: Path) -> 
     assert again.section == sized.section
     sent = bundle(sized)
     assert sent.data["section"] == sized.data["section"]
+
+
+def test_the_table_of_materials_may_be_left_out(tmp_path: Path, sized: Study) -> None:
+    before, after = STUDY.split("[materials]")
+    (tmp_path / "study.toml").write_text(before + after[after.index("[drive]") :])
+    plain = tf.study(tmp_path / "study.toml")
+    assert list(plain.materials) == list(sized.materials)
+    dense = plain.replace({"materials.tread.density.value": "1200 kg/m^3"})
+    assert dense.materials["tread"].density.value == "1200 kg/m^3"
+    assert tf.study(plain.save(tmp_path / "saved.toml")).materials.keys() == plain.materials.keys()
+    assert bundle(plain).unpacked(tmp_path / "packed").materials.keys() == plain.materials.keys()
+    with pytest.raises(InputError, match="materials: no material card for region 'carcass'"):
+        plain.replace({"section": "nasa-22x5.5-8pr"})

@@ -48,6 +48,7 @@ def coarse() -> tf.Study:
         ("roll", {"torque": math.nan}, "torque: must be finite, not nan"),
         ("roll", {"friction": "x"}, "friction: must be a number, not 'x'$"),
         ("slip_curve", {"slip_angle": [0.01, math.nan]}, "slip_angle: must be finite, not nan"),
+        ("slip_curve", {"slip_angle": np.int64(0), "slip": []}, "slip: give at least one value"),
         ("tyre_forces", {"loads": 5e3}, r"loads: must be a list of numbers in N, not 5000\.0"),
         ("tyre_forces", {"slips": [0.1, math.nan]}, "slips: must be finite, not nan"),
         ("natural_frequencies", {"harmonics": [1.5]}, r"harmonics: must be whole numbers from 0 to 60, not \[1\.5\]"),

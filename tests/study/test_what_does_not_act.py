@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 import pytest
 
 import tyrefem as tf
 from tyrefem.errors import InputError
-from tyrefem.mechanics.rolling.critical_speed import ring_speed
+from tyrefem.mechanics.rolling.critical_speed import CROWN, ring_speed
 from tyrefem.sizes import draw_size
 
 pytestmark = pytest.mark.fast
@@ -50,6 +51,19 @@ def test_the_voids_of_a_pattern_make_waves_on_the_ring_faster() -> None:
     assert after > 1.01 * before
     assert after == pytest.approx(lighter, rel=1e-6)
     assert math.isfinite(after)
+
+
+def test_the_ring_is_the_middle_of_the_width() -> None:
+    """Mass per area of all elements within `CROWN` of the section's width."""
+    study = tf.study(TYRE)
+    mesh = study.mesh().mesh
+    corners, width = mesh.p[:, mesh.t], 2 * np.abs(mesh.p[1]).max()
+    middle = np.abs(corners[1].mean(axis=0)) < CROWN * width / 2
+    after = np.roll(corners, -1, axis=1)
+    areas = np.abs((corners[0] * after[1] - corners[1] * after[0]).sum(axis=0)) / 2
+    density = study.materials["tread"].density.at(25.0)  # as all its compounds
+    mass = density * float(areas[middle].sum()) / float(np.ptp(corners[1][:, middle]))
+    assert ring_speed(study, 572e3) == pytest.approx(math.sqrt(572e3 * mesh.p[0].max() / mass), rel=1e-9)
 
 
 @pytest.mark.parametrize(

@@ -10,6 +10,7 @@ from typing import Annotated, ClassVar, Literal
 from tyrefem.boundaries import CAL, FILM, Law
 from tyrefem.cards import FilmCoefficient, Warmth
 from tyrefem.cards.plausible import AIR_FILM, GAS_HEAT
+from tyrefem.errors import InputWarning
 from tyrefem.plugins import Range, Trial, trial
 from tyrefem.quantity import KELVIN, Unit
 
@@ -93,6 +94,12 @@ class Held(ContainedAirLaw):
 
     law: Literal["held"]
     temperature: Warmth
+
+    def warnings(self) -> tuple[InputWarning, ...]:
+        """An initial temperature, which a gas of constant temperature does not have."""
+        if self.initial is None:
+            return super().warnings()
+        return (*super().warnings(), InputWarning("does not act: the gas keeps its 'temperature'", "initial"))
 
     @property
     def fixed_temperature(self) -> float:

@@ -9,7 +9,7 @@ import copy
 import functools
 import re
 import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Self, get_args
 
@@ -70,7 +70,7 @@ class Card(Brief, BaseModel):
         try:
             return cls.model_validate(data)
         except ValidationError as error:
-            raise _one_error(error, file) from None
+            raise _one_error(error, data, file) from None
 
     def warnings(self) -> tuple[InputWarning, ...]:
         """Unlikely values in this table and in its subtables; field names as in the file.
@@ -143,10 +143,10 @@ def _units(card: type[Card]) -> dict[str, str]:
     return units
 
 
-def _one_error(error: ValidationError, file: str | Path | None) -> InputError:
+def _one_error(error: ValidationError, data: Any, file: str | Path | None) -> InputError:
     first = error.errors(include_url=False)[0]
-    field = ".".join(str(part) for part in first["loc"])
     cause = first.get("ctx", {}).get("error")
+    field = ".".join(_keys(first["loc"], data, whole=isinstance(cause, InputError)))
     if isinstance(cause, InputError):
         return cause.within(field=field or None, file=file)
     message = str(cause) if cause is not None else first["msg"]
@@ -159,6 +159,12 @@ def _one_error(error: ValidationError, file: str | Path | None) -> InputError:
     elif first["type"] == "too_short":
         least = first["ctx"]["min_length"]
         message = f"must have at least {least} entr{'y' if least == 1 else 'ies'}, not {first['ctx']['actual_length']}"
+    elif first["type"] == "too_long":
+        message = f"must have at most {first['ctx']['max_length']} entries"
+    elif first["type"] in ("bool_type", "bool_parsing"):
+        message = f"must be true or false, not {first['input']!r:.60}"
+    elif first["type"] in ("int_type", "int_parsing", "int_from_float"):
+        message = f"must be a whole number, not {first['input']!r:.60}"
     elif first["type"] == "string_too_short":
         message = "must not be empty"
     elif first["type"] in ("tuple_type", "list_type"):
@@ -175,6 +181,24 @@ def _one_error(error: ValidationError, file: str | Path | None) -> InputError:
     return InputError(message, field=field or None, file=file)
 
 
+def _keys(place: Sequence[int | str], data: Any, *, whole: bool) -> list[str]:
+    """The keys of pydantic's place as in the file: without the law's name, which it adds to that of a table of laws.
+
+    ``whole``: a list at the place is no error by itself, so that the law "table" is not its key "table".
+    """
+    keys: list[str] = []
+    for number, part in enumerate(place):
+        law = data.get("law") if isinstance(data, Mapping) else None
+        after = place[number + 1 : number + 2]
+        if part == law and (part not in data or after == (part,) or (whole and not after)):
+            continue
+        keys.append(str(part))
+        inside = isinstance(data, Mapping) and part in data
+        entry = isinstance(data, list | tuple) and isinstance(part, int) and part < len(data)
+        data = data[part] if inside or entry else None
+    return keys
+
+
 def read_toml(path: str | Path) -> dict[str, Any]:
     """A TOML file as plain data; `InputError` with the line if it is not valid TOML."""
     path = Path(path)
@@ -186,6 +210,8 @@ def read_toml(path: str | Path) -> dict[str, Any]:
         raise InputError(f"not valid TOML: {error}{_unquoted(path, str(error))}", file=path) from None
     except UnicodeDecodeError:
         raise InputError("not a text file in UTF-8", file=path) from None
+    except (ValueError, RecursionError) as error:  # a number of thousands of digits, thousands of nested lists
+        raise InputError(f"not valid TOML: {error}", file=path) from None
     except OSError as error:
         raise InputError(f"cannot be read: {error.strerror or error}", file=path) from None
 

@@ -30,7 +30,7 @@ def entry_number(entries: Sequence[Any], part: str, field: str) -> int:
     names = names_of(entries)
     places = [place for place, name in enumerate(names) if name == part]
     if not places:
-        if part.isdigit() and int(part) < len(entries):
+        if part.isdecimal() and int(part) < len(entries):
             return int(part)
         places = [place for place, name in enumerate(names) if part in name.split(JOINT)]
     if not places:

@@ -97,7 +97,7 @@ def _words(results: list[CriticalSpeed]) -> str:
         belt, least = result.belt, result.any_wave
         warm = "cards" if result.temperature is None else f"{result.temperature:.4g} degC"
         wave = (
-            "none below 200 m/s"
+            "none, or no equilibrium, below 200 m/s"
             if belt is None
             else f"{belt.speed:6.1f} m/s, {belt.harmonic} waves of {belt.wavelength * 1e3:.0f} mm"
         )

@@ -42,7 +42,8 @@ def explore(
     tolerance: Annotated[
         str | None,
         typer.Option(
-            help="Largest temperature error that the certificate allows; default: 0.3 K, with footprint FEM 1 K."
+            help="Largest temperature error that the certificate allows; default: 0.3 K, 1 K with strain = 'fem' or "
+            "'barrel'."
         ),
     ] = None,
     changes: SetOption = None,

@@ -34,7 +34,11 @@ def new(
     ] = "",
     copy_of: Annotated[
         str | None,
-        typer.Option("--from", help="Card to copy; of a tyre the study to scale.", autocompletion=complete_names),
+        typer.Option(
+            "--from",
+            help="Card to copy; default: nasa-22x5.5-8pr, of a material nasa-tread. Of a tyre: the study to scale.",
+            autocompletion=complete_names,
+        ),
     ] = None,
     out: Annotated[
         Path | None,
@@ -48,7 +52,7 @@ def new(
     changes: SetOption = None,
     force: ForceOption = False,
 ) -> None:
-    """Copy a study, section or material card into this folder under a new name, to be edited.
+    """Begin a card of your own in this folder: a copy, or made from a tyre's size; or a plugin from a template.
 
     A section or study may be made from a tyre's size: `tyrefem new section 205/60R15 --rim "6 in"`. `new tyre` scales
     a study with its section to another size: `tyrefem new tyre 225/45R17 --from passenger-205-55r16`.

@@ -41,7 +41,7 @@ def wear(
     slip_angle: Annotated[
         str | None,
         typer.Option(
-            help="Slip angle; default: 0.5 deg, a mean of ordinary driving, or that of the drive (see below)."
+            help="Slip angle; default: 0.5 deg, a mean of ordinary driving; with sliding = 'rolling' the drive's."
         ),
     ] = None,
     slip: Annotated[str | None, typer.Option(help="Longitudinal slip, '1 %', positive drives; default: free.")] = None,

@@ -37,6 +37,27 @@ SLOWEST = 1.0
 COLDEST, HOTTEST = -50.0, 250.0
 
 
+#: Standard deviations from its station at which a Gaussian along the meridian counts as nothing: 4e-6 of it.
+WIDTHS = 5.0
+
+
+def no_region(study: StudyOfTyre, region: str | None) -> str | None:
+    """Why an effect placed by a region does nothing in a study that has no such region; None: it has it, or all are
+    meant."""
+    section = study.section
+    if region is None or region in section.regions:
+        return None
+    return f"section '{section.name}' has no region '{region}'{nearest(region, section.regions)}"
+
+
+def beyond_meridian(study: StudyOfTyre, station: float | None, width: float | None) -> str | None:
+    """Why a Gaussian about a station, m, does nothing in a study: it lies `WIDTHS` beyond the meridian; else None."""
+    length = study.section.line.length
+    if station is None or width is None or station - WIDTHS * width <= length:
+        return None
+    return f"station {station * 1e3:,.0f} mm lies beyond the meridian, which ends {length * 1e3:.4g} mm from the crown"
+
+
 def no_carcass(study: StudyOfTyre) -> str | None:
     """Why an effect that is placed by the region 'carcass' has no meaning in a study; None where there is one."""
     section = study.section

@@ -8,9 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
+from tyrefem.effects._shared import beyond_meridian
 from tyrefem.effects.effect import Effect, Factor, Prior
 from tyrefem.effects.part_of_drive import Begins, Ends, check_order, is_outside, stated_times, times_in_words
-from tyrefem.effects.tyre import Tyre
+from tyrefem.effects.tyre import StudyOfTyre, Tyre
 from tyrefem.quantity import Unit
 
 Array = NDArray[np.float64]
@@ -84,3 +85,7 @@ class MissingFlux(Effect):
             return self.into
         s, _ = tyre.places(x)
         return np.asarray(self.into * np.exp(-(((s - self.station) / self.width) ** 2) / 2))
+
+    def problem(self, study: StudyOfTyre) -> str | None:
+        """A station beyond the meridian."""
+        return beyond_meridian(study, self.station, self.width)

@@ -8,9 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
+from tyrefem.effects._shared import beyond_meridian, no_region
 from tyrefem.effects.effect import Effect, Factor, Prior
 from tyrefem.effects.part_of_drive import Begins, Ends, check_order, is_outside, stated_times, times_in_words
-from tyrefem.effects.tyre import Tyre
+from tyrefem.effects.tyre import StudyOfTyre, Tyre
 from tyrefem.quantity import Unit
 
 Array = NDArray[np.float64]
@@ -66,3 +67,7 @@ class MissingHeat(Effect):
             return 0.0
         s, _ = tyre.places(x)
         return np.asarray(self.heat * np.exp(-(((s - self.station) / self.width) ** 2) / 2))
+
+    def problem(self, study: StudyOfTyre) -> str | None:
+        """A region that the section does not have, or a station beyond its meridian."""
+        return no_region(study, self.region) or beyond_meridian(study, self.station, self.width)

@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
+from tyrefem.effects._shared import no_region
 from tyrefem.effects.effect import Effect, Factor, Prior
-from tyrefem.effects.tyre import Tyre
+from tyrefem.effects.tyre import StudyOfTyre, Tyre
 
 Array = NDArray[np.float64]
 
@@ -37,3 +38,7 @@ class MissingLoss(Effect):
     def heat_factor(self, tyre: Tyre, zone: str, x: Array, t: float, T: Array) -> Factor:
         """1 + gain in the region."""
         return 1.0 + self.gain if self.region in (None, tyre.region(zone)) else 1.0
+
+    def problem(self, study: StudyOfTyre) -> str | None:
+        """A region that the section does not have."""
+        return no_region(study, self.region)

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from tyrefem.errors import InputError, OutputError, ResultWarning
 from tyrefem.fatigue.life import LifeData, life
 from tyrefem.inputs.changes import scaled
 from tyrefem.inputs.drive import SLIPS
@@ -57,24 +59,43 @@ def shifts(
     """The shortest life of the study under each change alone, all else as written; by default those of `shifts_of`.
 
     Without a run (a life at a given temperature) the ambient's step is added to that temperature. Speed then changes
-    nothing; it is listed all the same.
+    nothing; it is listed all the same. A change that the study cannot take, such as more load than the tyre carries, is
+    left out with a `ResultWarning`.
     """
     made = []
     for name in shifts_of(before.study) if which is None else which:
-        study = before.study.replace(changed(before.study, name))
-        temperature = before.temperature
-        if temperature is not None and name == "ambient":
-            temperature += WARMER
-        after = life(study, temperature=temperature, plateau=before.plateau, progress=progress)
+        words = _words(before.study, name)
+        try:
+            after = _after(before, name, progress)
+        except OutputError:
+            raise
+        except InputError as error:
+            warnings.warn(f"{words} is left out: {error.message}", ResultWarning, stacklevel=2)
+            continue
         element = after.first
         point = int(after.typical[element])
         made.append(
             LifeShift(
-                SHIFTS[name][0], after.shortest, after.shortest / before.shortest,
+                words, after.shortest, after.shortest / before.shortest,
                 after.rings.region_of(element), float(after.temperatures[element, point]),
             )
         )  # fmt: skip
     return tuple(made)
+
+
+def _words(study: StudyData, name: str) -> str:
+    """What a change changes: a drive without loads has deflections."""
+    words = SHIFTS[name][0]
+    by_deflection = all(phase.load is None for phase in study.card.drive.phases)
+    return words.replace("load", "deflection") if by_deflection else words
+
+
+def _after(before: LifeData, name: str, progress: Callable[[float], None] | None) -> LifeData:
+    study = before.study.replace(changed(before.study, name))
+    temperature = before.temperature
+    if temperature is not None and name == "ambient":
+        temperature += WARMER
+    return life(study, temperature=temperature, plateau=before.plateau, progress=progress)
 
 
 def changed(study: StudyData, name: str) -> dict[str, Any]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, GetJsonSchemaHandler, model_validator
@@ -113,7 +114,24 @@ class PatchCard(Card):
     @property
     def curvature(self) -> float:
         """Mean curvature of the outer face, 1/m."""
-        return sum(0.5 / r for r in (self.circumferential_radius, self.lateral_radius) if r is not None)
+        return sum(0.5 / r for r in self._radii.values())
+
+    @property
+    def _radii(self) -> dict[str, float]:
+        names = ("circumferential_radius", "lateral_radius")
+        return {name: getattr(self, name) for name in names if getattr(self, name) is not None}
+
+    @property
+    def most_curved(self) -> str:
+        """Field of the smaller radius of curvature."""
+        return min(self._radii, key=self._radii.__getitem__, default="radius")
+
+    def along_face(self, distance: float) -> float:
+        """Distance along the curved face of points at a distance from the beam's axis, m; infinite: the face ends."""
+        if not self.curvature:
+            return distance
+        sine = self.curvature * distance
+        return math.asin(sine) / self.curvature if sine < 1 else math.inf
 
 
 class HeatingPhases(Card):
@@ -168,7 +186,8 @@ class SensorCard(Card):
             if self.face is None:
                 raise InputError("a camera needs 'face', outer or inner", field="face")
             if self.depth is not None or self.depth_sd:
-                raise InputError("a camera measures a face and has no depth", field="depth")
+                field = "depth_sd" if self.depth is None else "depth"
+                raise InputError("a camera measures a face and has no depth", field=field)
             if self.lag or self.lag_sd:
                 raise InputError("a camera has no lag", field="lag" if self.lag else "lag_sd")
         elif self.depth is None:
@@ -229,20 +248,23 @@ class RigCard(Card):
 
     def _patch(self) -> None:
         spot, radius = self.laser.spot_diameter / 2, self.patch.radius
-        if spot >= radius:
+        if self.patch.along_face(spot) >= radius:
             words = f"the spot, {2e3 * spot:g} mm wide, does not fit on the patch, {2e3 * radius:g} mm wide"
-            raise InputError(words, field="laser.spot_diameter")
+            raise InputError(words + (" along its curved face" if spot < radius else ""), field="laser.spot_diameter")
         curvature = self.patch.curvature
         if curvature * max(self.thickness, radius / 1.5) >= 1:
             words = (
                 f"a patch of {1e3 * radius:g} mm and {1e3 * self.thickness:g} mm thickness cannot have this curvature"
             )
-            raise InputError(words, field="patch.circumferential_radius")
+            raise InputError(words, field=f"patch.{self.patch.most_curved}")
 
     def _sensor(self, name: str, sensor: SensorCard) -> None:
         field = f"sensors.{name}"
         if name.lower() in ("time", "run", "t") or not name.strip():
             raise InputError(f"'{name}' is a reserved name of the tables", field="sensors")
+        if name != name.strip() or len(name.splitlines()) != 1:
+            words = f"{name!r} is no name of a column: it begins or ends with a space, or has a line break"
+            raise InputError(words, field="sensors")
         if sensor.depth is not None and sensor.depth >= self.thickness:
             words = f"{1e3 * sensor.depth:g} mm is outside the tyre, which is {1e3 * self.thickness:g} mm thick"
             raise InputError(words, field=f"{field}.depth")

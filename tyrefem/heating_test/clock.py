@@ -33,20 +33,22 @@ class Clock:
     Attributes
     ----------
     heating, cooling : times since the switch, s; cooling is empty if the test ends before.
+    beyond : computed time after `end`, s: a table's clock may be late or early, and its last readings lie there.
     """
 
     phases: HeatingPhases
     end: float
+    beyond: float = 0.0
 
     @cached_property
     def heating(self) -> Array:
         """Times since the laser was switched on, s."""
-        return since_switch(min(self.phases.heating, max(self.end - self.phases.idle, 1.0)))
+        return since_switch(min(self.phases.heating, max(self.end + self.beyond - self.phases.idle, 1.0)))
 
     @cached_property
     def cooling(self) -> Array:
         """Times since the laser was switched off, s, without 0."""
-        left = self.end - self.phases.idle - self.phases.heating
+        left = self.end + self.beyond - self.phases.idle - self.phases.heating
         return since_switch(left)[1:] if left > 0 else np.zeros(0)
 
     @cached_property

@@ -19,8 +19,7 @@ Array = NDArray[Any]
 
 @dataclass(frozen=True)
 class Fineness:
-    """Number of elements under the spot, outside it, and per layer; `first`: size of the element at the spot's edge, as
-    a share of the spot's radius, and at the outer face, as a share of the layer."""
+    """Number of elements under the spot, outside it, and per layer; finer at the spot's edge and the outer face."""
 
     spot: int = 4
     beyond: int = 9
@@ -37,7 +36,7 @@ def graded(length: float, count: int, first: float) -> Array:
     >>> graded(7.0, 3, 1.0).round(3).tolist()
     [0.0, 1.0, 3.0, 7.0]
     """
-    if first * count >= length:
+    if count == 1 or first * count >= length:
         return np.linspace(0.0, length, count + 1)
     from scipy.optimize import brentq
 

@@ -110,7 +110,7 @@ def identify(
     heating_tests = tuple(tests) or read(card, tables if file is None else beside(card, file, tables), without)
     # The matrices are too small for threads: on a busy machine, waiting for threads takes longer than the work.
     with one_thread():
-        sensors = tuple(series.sensor for series in heating_tests[0].series)
+        sensors = tuple(dict.fromkeys(series.sensor for test in heating_tests for series in test.series))
         fitter = Fitter(Twin(card, sensors, fineness or USUAL), heating_tests, progress)
         return _identified(card, file, fitter, linear)
 
@@ -142,7 +142,8 @@ def _identified(card: RigCard, file: Path | None, fitter: Fitter, linear: bool) 
             if selection.chosen in tried or len(tried) == 3:
                 break
         rough, chosen = False, selection.chosen
-    return _result(card, file, fitter.tests, fit, selection, keep)
+    # Fit and selection may alternate without end: the slopes are those of the fit.
+    return _result(card, file, fitter.tests, fit, replace(selection, chosen=chosen), keep)
 
 
 def _weighed(fitter: Fitter, every: Parameters, x: Array, fit: RigFit, floor: float) -> tuple[Noise, Selection]:

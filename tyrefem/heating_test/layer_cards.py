@@ -22,14 +22,19 @@ _MOST = 0.99
 def bases(card: RigCard, given: Sequence[str]) -> dict[str, str]:
     """Layer -> base card, from ``LAYER=CARD`` or one ``CARD`` for every layer.
 
-    Raises InputError if the rig does not have the layer, or a card is unknown.
+    Raises InputError if the rig does not have the layer, a card is unknown, or a layer or all layers have two cards.
     """
     names = [layer.name for layer in card.layers]
     chosen: dict[str, str] = {}
+    before: set[str] = set()
     for text in given:
         layer, equals, name = text.partition("=")
         if equals and layer not in names:
             raise InputError(f"unknown layer '{layer}'{nearest(layer, names)}", field="--base")
+        place = f"layer '{layer}'" if equals else "all layers"
+        if place in before:
+            raise InputError(f"a second card for {place}: {name if equals else text}; give one", field="--base")
+        before.add(place)
         try:
             material(name if equals else text)
         except InputError as error:

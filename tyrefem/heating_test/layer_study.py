@@ -29,7 +29,7 @@ def merged(card: RigCard, count: int) -> RigCard:
     """Merge neighbouring layers of a card until `count` are left, the thinnest pair first.
 
     Thicknesses are added; the prior conductivity is of layers in series; density and specific heat preserve mass and
-    heat capacity. Raises InputError if the card has fewer layers.
+    heat capacity. The relative standard deviations are the larger ones. Raises InputError if the card has fewer layers.
 
     >>> from tyrefem.heating_test.files import load
     >>> layer = merged(load("trtlab")[0], 1).layers[0]
@@ -52,17 +52,20 @@ def _merged(a: Any, b: Any) -> Any:
     heat = sum(layer.thickness * layer.density.value * layer.specific_heat.value for layer in (a, b))
     k = total / sum(layer.thickness / layer.conductivity.value for layer in (a, b))
 
-    def changed(old: Any, value: float) -> Any:
-        return old.model_copy(update={"value": value, "source": f"mean of {a.name} and {b.name}"})
+    source = f"mean of {a.name} and {b.name}"
+
+    def changed(key: str, value: float) -> Any:
+        sd = max(getattr(a, key).relative_sd, getattr(b, key).relative_sd)
+        return getattr(a, key).model_copy(update={"value": value, "source": source, "relative_sd": sd})
 
     return a.model_copy(
         update={
             "name": f"{a.name}+{b.name}",
             "thickness": total,
             "thickness_sd": math.hypot(a.thickness_sd, b.thickness_sd),
-            "density": changed(a.density, mass / total),
-            "conductivity": changed(a.conductivity, k),
-            "specific_heat": changed(a.specific_heat, heat / mass),
+            "density": a.density.model_copy(update={"value": mass / total, "source": source}),
+            "conductivity": changed("conductivity", k),
+            "specific_heat": changed("specific_heat", heat / mass),
         }
     )
 

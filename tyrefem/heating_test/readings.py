@@ -30,6 +30,8 @@ MOST = 400
 
 #: Time that a logger may run longer than the card's phases, s.
 _SLACK = 5.0
+#: Standard deviations by which a table's clock may have the switch too early for its last readings to be computed.
+_EARLY = 4.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,7 +149,7 @@ def matched(card: RigCard, run: MeasuredRun, wanted: Sequence[str], without: Ite
     if np.sum(run.times > idle) < 5:
         words = f"run '{run.name}' has fewer than 5 readings after {idle:g} s, when the laser is switched on"
         raise InputError(words, file=run.file)
-    clock = Clock(card.phases, float(min(run.times[-1], end)))
+    clock = Clock(card.phases, float(min(run.times[-1], end)), _EARLY * card.phases.clock_sd)
     series = []
     for name in wanted:
         held = np.isfinite(run.temperatures[name].to_numpy(dtype=float))

@@ -70,7 +70,7 @@ class Simulation(Brief):
             peak, ambient = float(fields.max()), float(fields[0, 0])
             if peak > HOT:
                 out.append(f"Run '{name}': the spot reaches {peak:.0f} degC; rubber changes at such temperatures.")
-            rim = float((grid.at(grid.along[-1], grid.depths) @ fields[-1]).max()) - ambient
+            rim = float((grid.at(grid.along[-1], grid.depths) @ fields.T).max()) - ambient
             if rim > 0.01 * (float(fields[on].max()) - ambient):
                 out.append(f"Run '{name}': the patch's rim is {rim:.1f} K warm; patch.radius should be larger.")
         return tuple(out)
@@ -117,7 +117,8 @@ def simulate(
 
             raise InputError(f"unknown number '{name}'{nearest(name, known)}", field="values")
     numbers = {**known, **(values or {})}
-    twin, clock = Twin(card, sensors, fineness or USUAL), Clock(card.phases, card.phases.end)
+    beyond = max((0.0, *(-numbers[clock_of(name)] for name in card.runs)))
+    twin, clock = Twin(card, sensors, fineness or USUAL), Clock(card.phases, card.phases.end, beyond)
     times = np.arange(0.0, card.phases.end + every / 2, every)
     times = times[times <= card.phases.end]
     rng = np.random.default_rng(seed)

@@ -290,7 +290,7 @@ class StudyCard(Card):
     section: Any
     run: Text | None = None
     made_for: Text | None = None
-    materials: dict[str, Any]
+    materials: dict[str, Any] = Field(default_factory=dict)
     drive: Drive
     mesh: MeshChoice = MeshChoice()
     mechanics: Mechanics = Mechanics()

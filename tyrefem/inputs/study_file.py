@@ -39,6 +39,7 @@ def _portable(data: Mapping[str, Any], folder: Path | None) -> dict[str, Any]:
         entry["table"] = str(whole / entry["table"])
     content["section"] = library.located("section", content["section"], folder)
     content["materials"] = {
-        region: library.located("material", reference, folder) for region, reference in content["materials"].items()
+        region: library.located("material", reference, folder)
+        for region, reference in content.get("materials", {}).items()
     }
     return content

@@ -72,7 +72,7 @@ class StudyParts(Brief):
             new_section, section_card = _section(data["section"], card, folder, file)
         section = _worn(new_section, card)
         materials = StudyMaterials.read(
-            completed(data["section"], data["materials"], file),
+            completed(data["section"], data.get("materials", {}), file),
             new_section,
             folder,
             file,
@@ -106,7 +106,7 @@ class StudyParts(Brief):
         card = StudyCard.check(data, file)
         new_section = _full(section_of(section_card), card)
         cards = {region: MaterialCard.check(content, path) for region, (content, path) in written.items()}
-        references = completed(data["section"], data["materials"], file)
+        references = completed(data["section"], data.get("materials", {}), file)
         materials = StudyMaterials(references, folder, cards, dict(written))
         places = sensor_places(card.sensors, new_section, file)
         section = _worn(new_section, card)

@@ -105,10 +105,15 @@ class ThermalCard(Card):
                 raise InputError(f"'{name}' is a surrounding, whose temperature the runs give", field=f"bodies.{name}")
         known = (*self.bodies, *SURROUNDINGS)
         before: set[frozenset[str]] = set()
+        names: set[str] = set()
         for number, film in enumerate(self.films):
             if frozenset(film.between) in before:
                 raise InputError(f"a second film {film.name}: state both as one", field=f"films.{number}.between")
             before.add(frozenset(film.between))
+            if film.name in names:
+                words = f"'{film.name}' is the name of another film too: call a body differently"
+                raise InputError(words, field=f"films.{number}.between")
+            names.add(film.name)
             for name in film.between:
                 if name not in known:
                     raise InputError(f"no body '{name}'{nearest(name, known)}", field=f"films.{number}.between")

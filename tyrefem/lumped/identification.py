@@ -131,7 +131,8 @@ def identify(card: ThermalCard) -> LumpedIdentification:
 
     Raises
     ------
-    InputError : the measurements do not determine the numbers; says which, and what is missing.
+    InputError : the measurements do not determine the numbers; says which, and what is missing. Or a body's share of
+        the heat comes out below 0.
     """
     from scipy.optimize import least_squares
     from scipy.stats import chi2
@@ -178,6 +179,8 @@ def identify(card: ThermalCard) -> LumpedIdentification:
             raise
         words = f"these bodies cannot have what was measured; {_worst(_rows(card, network))}"
         raise InputError(words, field="runs") from error
+    if not doubtful:
+        _check_shares(network)
     hotter, colder = (of_card(_heated(card, 1 + step), near) for step in (HEAT_STEP, -HEAT_STEP))
     by_heat = -covariance @ jacobian.T @ (hotter - colder) / (2 * HEAT_STEP)
     sd = start * size * np.hypot(np.sqrt(np.diag(covariance)), by_heat * card.heat_sd)
@@ -187,6 +190,17 @@ def identify(card: ThermalCard) -> LumpedIdentification:
         value = 0.0 if none else float(value)
         numbers.append(LumpedNumber(item.name, item.unit, value, float(spread), area, doubtful))
     return LumpedIdentification(card, network, tuple(numbers))
+
+
+def _check_shares(network: LumpedNetwork) -> None:
+    """Refuse a share below 0 of the last heated body, which gets the heat that the others leave."""
+    for name, share in zip(network.card.bodies, network.shares, strict=True):
+        if share < -1e-6:
+            raise InputError(
+                f"comes out as {share:.3g}, less than no heat: heat_share = 0 leaves the body without heat; else check "
+                "plateaus and known conductances",
+                field=f"bodies.{name}.heat_share",
+            )
 
 
 def _heated(card: ThermalCard, factor: float) -> ThermalCard:

@@ -151,7 +151,10 @@ class RoadFriction(FrictionOnRoad):
         return self.decade is not None
 
     def __call__(self, speed: Array | float, pressure: Array | float, temperature: Array | float) -> Array:
-        """mu at sliding speeds, m/s, contact pressures, Pa, and temperatures of the tread, degC."""
+        """mu at sliding speeds, m/s, contact pressures, Pa, and temperatures of the tread, degC.
+
+        Below a tenth of p_0 mu is that of a tenth of p_0.
+        """
         pressure = np.maximum(np.asarray(pressure, dtype=float), 0.1 * self.pressure)
         falling = (self.pressure / pressure) ** self.pressure_exponent
         speed = np.asarray(speed, dtype=float)

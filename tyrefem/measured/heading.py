@@ -27,6 +27,8 @@ _DATE = r"date|datum|fecha"
 
 #: Quantities that loggers write beside temperatures, by their SI unit. Angles are not included: "deg" may be degC.
 _CHANNELS = ("Pa", "m/s", "N", "m", "kg", "s", "Hz", "rad/s", "W", "J", "m/s**2")
+#: Units without dimension: per cent, and record numbers of a TOA5 table.
+_COUNTS = ("%", "RN")
 
 _BRACKETS = re.compile(r"^(?P<name>.*?)\s*(?:\[(?P<square>[^][]*)\]|\((?P<round>[^()]*)\))$", re.DOTALL)
 # The degree sign, similar characters, and its form after a wrong decoding.
@@ -79,7 +81,7 @@ def is_channel(text: str) -> bool:
     unit = parts(text)[1]
     if not unit or is_temperature(unit):
         return False
-    if unit == "%":
+    if unit in _COUNTS:
         return True
     for quantity in _CHANNELS:
         try:

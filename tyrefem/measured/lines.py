@@ -16,6 +16,7 @@ from tyrefem.errors import InputError, nearest
 from tyrefem.estimates.work import TEXT, check_memory
 from tyrefem.measured.heading import is_time, parts
 from tyrefem.measured.names import in_table_words
+from tyrefem.measured.toa5 import one_heading
 from tyrefem.measured.unit_row import with_units
 from tyrefem.measured.workbook import is_workbook, sheet_texts
 from tyrefem.output import note_input
@@ -110,7 +111,7 @@ def split(text: str, path: Path, rename: Mapping[str, str] | None = None) -> Lin
 
     A line that begins with ``;`` is a row (in a semicolon table its first cell is empty), not a comment.
     Up to 100 lines of free text may precede the heading, which is the first line with a time column. Units in a row
-    of their own below it are joined to its names.
+    of their own below it are joined to its names; so are those of a TOA5 table.
 
     Parameters
     ----------
@@ -131,6 +132,9 @@ def split(text: str, path: Path, rename: Mapping[str, str] | None = None) -> Lin
             content.append((number, line))
     if not content:
         raise NoTableError("has only comments, no heading and no readings", file=path)
+    toa5 = one_heading(content)
+    if toa5 is not None:
+        comments, content = [toa5[0].replace('"', ""), *comments], toa5[1]
     try:
         position, delimiter = _heading(content, path, rename)
     except InputError as error:

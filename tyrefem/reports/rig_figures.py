@@ -19,6 +19,7 @@ from tyrefem.reports.figures.style import (
     TITLE,
     add_axes,
     figure,
+    line_style,
     plain,
     png,
     short,
@@ -26,7 +27,6 @@ from tyrefem.reports.figures.style import (
     tidy,
     title,
 )
-from tyrefem.reports.words import history_files
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -43,9 +43,9 @@ Array = NDArray[Any]
 
 def pictures(identification: IdentificationData) -> dict[str, bytes]:
     """File name -> PNG: ``residuals-RUN``, ``intervals``, ``correlation``."""
-    runs = [test.name for test in identification.tests]
-    files = zip(history_files(runs, "residuals"), runs, strict=True)
-    drawn = {file: png(residuals(identification, run)) for file, run in files}
+    drawn = {}
+    for test in identification.tests:
+        drawn[f"residuals-{test.name}.png"] = png(residuals(identification, test.name))
     drawn["intervals.png"] = png(intervals(identification))
     drawn["correlation.png"] = png(correlation(identification))
     return drawn
@@ -198,8 +198,8 @@ def histories(
     for number, sensor in enumerate(sensors):
         axes = add_axes(drawn, 0.6 + 3.4 * number, 0.5, 2.65, 2.5)
         tidy(axes)
-        for color, (name, (times, values)) in zip(PALETTE, runs.items(), strict=False):
-            axes.plot(times / 60, values[:, number], color=color, lw=1.4, label=short(name, 16))
+        for place, (name, (times, values)) in enumerate(runs.items()):
+            axes.plot(times / 60, values[:, number], lw=1.4, label=short(name, 16), **line_style(place))
         axes.set_title(short(sensor, 24), fontsize=FONT, color=INK, loc="left")
         axes.set_xlabel("time [min]", fontsize=FONT)
         axes.set_xlim(0, phases.end / 60)

@@ -98,7 +98,7 @@ def _figure(identified: LumpedIdentification) -> Any:
         axes.set_title("plateaus" if unit == "degC" else "times: o warm-up, □ cool-down", fontsize=FONT, loc="left")
         tidy(axes)
     for place, name in enumerate(names):
-        drawn.text(0.62 + 0.12 * (place % 3), 0.965 - 0.04 * (place // 3), f"● {plain(name)}", fontsize=FONT,
+        drawn.text(0.62 + 0.12 * (place % 3), 0.965 - 0.04 * (place // 3), plain(f"● {name}"), fontsize=FONT,
                    color=PALETTE[place % len(PALETTE)])  # fmt: skip
     title(
         drawn, "Lumped tyre: computed over measured", f"bars: two standard deviations; misfit {identified.misfit:.2f}"

@@ -58,7 +58,7 @@ def unlike(stem: str, taken: set[str]) -> str:
     return free
 
 
-def history_files(runs: Iterable[object], kind: str = "histories") -> list[str]:
+def history_files(runs: Iterable[object]) -> list[str]:
     """Names of the pictures of runs: letters, digits, ``_``, ``.`` and ``-`` of the run's name stay.
 
     All are different, also where small and capital letters are the same, and short enough for a file system.
@@ -67,7 +67,7 @@ def history_files(runs: Iterable[object], kind: str = "histories") -> list[str]:
     ['histories-taxi-1.png', 'histories-taxi-1-2.png', 'histories-A.png', 'histories-a-2.png']
     """
     taken: set[str] = set()
-    return [f"{kind}-{unlike(file_stem(run, 'run'), taken)}.png" for run in runs]
+    return [f"histories-{unlike(file_stem(run, 'run'), taken)}.png" for run in runs]
 
 
 def seconds(value: float) -> str:

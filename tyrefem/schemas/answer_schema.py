@@ -12,8 +12,8 @@ from tyrefem.schemas.draft import DRAFT, Schema
 from tyrefem.schemas.rows import rows_of
 
 TYPES: dict[str, Any] = {
-    "text": "string", "number": "number", "integer": "integer", "truth": "boolean", "list": "array", "table": "object",
-    "written": "object",
+    "text": "string", "number": "number", "integer": "integer", "boolean": "boolean", "list": "array",
+    "table": "object", "written": "object",
 }  # fmt: skip
 TITLE = "Answers of tyrefem's commands in JSON"
 

@@ -17,7 +17,7 @@ _FITTED = {
     "held_out_p*": "number?: Probability of a larger misfit of the runs held out.",
     "largest_pull*": "number?: Largest distance of an uncertain input from its prior, in standard deviations.",
     "pulls_p*": "number?: Probability of larger pulls.", "at_bound*": "list: Parameters at a bound.",
-    "converged*": "truth: Has the fit converged?",
+    "converged*": "boolean: Has the fit converged?",
 }  # fmt: skip
 _RATE = {
     "right": "integer: Cases that hold.", "of": "integer: Cases that count.", "rate": "number?: Their share.",
@@ -82,7 +82,7 @@ DIAGNOSIS_ROWS: dict[str, Keys] = {
     "diagnose.sets[]": {
         "effects": "list: Effects of the set.", "probability": "number: Posterior probability.",
         "log_score_below_best": "number?: Below the best set, nats; null: far below.",
-        "credible": "truth: Is it among the sets that hold 95 %?", "fitted": "truth: Fitted with the full model?",
+        "credible": "boolean: Is it among the sets that hold 99 %?", "fitted": "boolean: Fitted with the full model?",
         **_FITTED,
     },
     "diagnose.gap": {
@@ -92,25 +92,26 @@ DIAGNOSIS_ROWS: dict[str, Keys] = {
     "diagnose.changes[]": {
         "key": "text: Dotted name of a number of the study.", "keys": "list: Further numbers that change with it.",
         "effect": "text?: The effect that it belongs to.", "variant": "table: Sensor, place or law of the effect.",
-        "runs": "list?: Runs in which it acts; null: in all.", "missing": "truth: Of a named effect, or missing heat?",
+        "runs": "list?: Runs in which it acts; null: in all.",
+        "missing": "boolean: Of a named effect, or missing heat?",
         "original": "number: Value of the study.", "value": "number: Value of the amended study.",
         "sd": "number?: Standard deviation.", "unit": "text: Unit.", "pull": "number?: Change over its prior's sd.",
         "source": "text: What the amended study says of it.",
     },
     "diagnose.runs[]": {
-        "run": "text: Measured run.", "hold_out": "truth: Held out of the fit?", "drive": "table: What differs.",
+        "run": "text: Measured run.", "hold_out": "boolean: Held out of the fit?", "drive": "table: What differs.",
         "readings": "integer: Number of readings.", "end_s": "number: Last time.",
         "noise_K": "table: Sensor -> noise.",
     },
     "diagnose.where": {
         "sensor": "text: Sensor.", "region": "text: Its region.", "phase": "text: heating, cooling ...",
-        "run": "text: Measured run.", "hold_out": "truth: Held out of the fit?", "speed_m_s": "number: Speed.",
+        "run": "text: Measured run.", "hold_out": "boolean: Held out of the fit?", "speed_m_s": "number: Speed.",
         "mean_K": "number: Mean of measured minus computed.", "rms_K": "number: Root mean square.",
         "sigma": "number: The mean over its standard deviation.",
     },
     "diagnose.noise": {
         "stated_K": "number: Of the study.", "from_data_K": "number?: By the scatter of the readings.",
-        "used_K": "number: As used.", "correlated": "truth: Do errors of neighbouring readings go together?",
+        "used_K": "number: As used.", "correlated": "boolean: Do errors of neighbouring readings go together?",
         "series": "list: The same by run and sensor.",
     },
     "diagnose.again[]": {
@@ -150,13 +151,13 @@ DIAGNOSIS_ROWS: dict[str, Keys] = {
         "seen_from": "number?: Amplitude from which the data show it.",
         "told_from": "number?: Amplitude from which it is told from all others.",
         "last_rival": "text: The effect that is told from it last.",
-        "identifiable_at_usual": "truth: Can it be named at its usual amplitude?",
+        "identifiable_at_usual": "boolean: Can it be named at its usual amplitude?",
     },
     "blind.cases[]": {
         "number": "integer: Number of the case.", "kind": "text: one, two, none, outside ...",
         "hidden": "list: Hidden effects.", "amplitude": "table: Dotted name -> value over its prior's sd.",
-        "identifiable": "truth: Could it be named?",
-        "identifiable_alone*": "truth: Could it be, were the rest of the data's model the study's?",
+        "identifiable": "boolean: Could it be named?",
+        "identifiable_alone*": "boolean: Could it be, were the rest of the data's model the study's?",
         "other_model*": "table: What else of the data's model differs.", "reason*": "text: Why the diagnosis failed.",
         "verdict": "text: Of the diagnosis.",
         "named": "list: Named effects.", "set": "list: Effects that remain possible.", "best": "text: Best set.",
@@ -216,17 +217,17 @@ DIAGNOSIS_INNER: dict[str, Keys] = {
     "diagnose.prior_sensitivity[]": {
         "effect": "text: Effect.", "prior": "text: Which prior.", "factor": "number: Its change.",
         "verdict": "text: Verdict with it.", "best": "text: Most probable set with it.",
-        "share": "number: Probability of that.", "decides": "truth: Is the verdict another?",
+        "share": "number: Probability of that.", "decides": "boolean: Is the verdict another?",
     },
     "diagnose.reduced": {
-        "used": "truth: Were reduced models used?", "modes*": "table: Run -> number of modes.",
+        "used": "boolean: Were reduced models used?", "modes*": "table: Run -> number of modes.",
         "points_by_reduced_models*": "integer: Simulations.", "points_by_lean_simulations*": "integer: The same.",
         "allowed_whitened*": "number: Allowed error over the noise.", "worst_whitened*": "number: Largest.",
         "worst_K*": "number: Largest error.", "certificates*": "list: By set of effects and run.",
         "*": "any: Why they were not used.",
     },
     "diagnose.reduced.certificates[]": {
-        "effects": "list: Set of effects.", "run": "text: Run.", "used": "truth: Is the reduced model good enough?",
+        "effects": "list: Set of effects.", "run": "text: Run.", "used": "boolean: Is the reduced model good enough?",
         "points": "integer: Full simulations of the certificate.", "whitened": "number?: Error over the noise.",
         "worst_K": "number?: Largest error.", "*": "any: Why it is not good enough.",
     },
@@ -235,12 +236,12 @@ DIAGNOSIS_INNER: dict[str, Keys] = {
         "heat_factor": "number: Fitted factor on its heat.", "rms_K": "number: Of the fit.",
         "held_out_rms_K": "number?: Of the runs held out.", "log_evidence_gain": "number: Over the study's law, nats.",
         "log_odds": "number: For it, nats.", "held_out_lead": "number?: Of the runs held out.",
-        "no_effect_missing": "truth: Does it explain the data alone?",
+        "no_effect_missing": "boolean: Does it explain the data alone?",
         "heat_ratio": "any: Its heat over that of the study's law, by zone.",
     },
     "diagnose.conformal": {
         "sentence": "text: In words.", "sets": "list: Sets of effects.", "effects_in_all": "list: Effects of all sets.",
-        "coverage_wanted": "number: Share of cases that hold the truth.", "threshold": "number: Of the score.",
+        "coverage_wanted": "number: Share of cases that hold the true set.", "threshold": "number: Of the score.",
         "fresh_cases": "table: held, of and further numbers of the check -> value.",
     },
     "diagnose.next_experiment": {
@@ -256,7 +257,7 @@ DIAGNOSIS_INNER: dict[str, Keys] = {
     "diagnose.missing_heat": {
         "sources": "list: Places, signs, amounts and courses in time.",
         "law": "table?: How the largest scales over the runs; null: no law was looked for.",
-        "cooling_run": "truth?: Do sources go on while the tyre stands?", "kind": "text: heat or flux.",
+        "cooling_run": "boolean?: Do sources go on while the tyre stands?", "kind": "text: heat or flux.",
         "region": "text: Region of the largest.", "station_m": "number: Its place along the meridian.",
         "stations_m": "list: Stations along the meridian.", "watts": "list: Heat by station, whole tyre.",
         "runs": "list: Heat and flux by station of every run.",
@@ -267,10 +268,10 @@ DIAGNOSIS_INNER: dict[str, Keys] = {
         "flux_sd_W_m2": "list: Its standard deviation.",
     },
     "diagnose.missing_heat.sources[]": {
-        "sentence": "text: In words.", "stated": "truth: Is the amount beyond two standard deviations?",
+        "sentence": "text: In words.", "stated": "boolean: Is the amount beyond two standard deviations?",
         "sign": "text: heat is missing, or cooling is missing.", "station_m": "number: Along the meridian.",
         "place": "text: In words.", "where": "text: Layer or surface.",
-        "inside_told_from_surface": "truth: Do the data tell them apart?", "kind": "text: heat or flux.",
+        "inside_told_from_surface": "boolean: Do the data tell them apart?", "kind": "text: heat or flux.",
         "amount_W_m3*": "number: Inside; of a flux amount_W_m2.", "amount_sd_W_m3*": "number: Its standard deviation.",
         "amount_W_m2*": "number: Through a surface.", "amount_sd_W_m2*": "number: Its standard deviation.",
         "amount_at": "table?: Run and time of the amount, where a free course is clear then, but not its mean.",
@@ -291,7 +292,7 @@ DIAGNOSIS_INNER: dict[str, Keys] = {
         "amount_sd_W_m2*": "list: Standard deviations.",
     },
     "diagnose.missing_heat.law": {
-        "sentences": "list: In words.", "holds": "truth: Is it stated?",
+        "sentences": "list: In words.", "holds": "boolean: Is it stated?",
         "lead_nats": "number: Over sources with a free strength in every run.",
         "share": "number: Of their gain in evidence.", **_PLACE_OF_LAW,
         "exponents": "list: Of every variable that varies.", "switch": "text: When the heat acts.",
@@ -302,9 +303,9 @@ DIAGNOSIS_INNER: dict[str, Keys] = {
         "draft_effect": "text?: File of the draft effect.", "places": "list: Places that competed.",
     },
     "diagnose.missing_heat.law.exponents[]": {
-        "name": "text: Variable.", "in_law": "truth: Is it in the law?", "mean": "number: Exponent.",
+        "name": "text: Variable.", "in_law": "boolean: Is it in the law?", "mean": "number: Exponent.",
         "sd": "number: Its standard deviation.", "probability": "number: That it acts.",
-        "told_by_runs": "truth: Do the runs tell more than the prior?",
+        "told_by_runs": "boolean: Do the runs tell more than the prior?",
         "reference": "number: Value at which the amplitude holds, SI.",
     },
     "diagnose.missing_heat.law.alternatives[]": {
@@ -321,7 +322,7 @@ DIAGNOSIS_INNER: dict[str, Keys] = {
     "isolability.calibration": {
         "study": "text: Study.", "layout": "table: Sensors and runs.", "seed": "integer: Of the cases.",
         "cases": "integer: Number.", "ranks": "table: Of what -> test that ranks are uniform.",
-        "fitted": "truth: Simulated and fitted as a diagnosis does; else linear.",
+        "fitted": "boolean: Simulated and fitted as a diagnosis does; else linear.",
         "reliability": "table: Of what -> stated probabilities and how often they held.",
         "unexplained": "table: How often this verdict is false.", "conformal": "table: Sets with known coverage.",
     },

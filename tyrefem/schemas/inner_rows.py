@@ -27,7 +27,7 @@ MESH: Keys = {
     "mesher*": "text: mapped, gmsh or a file.", "cell*": "text?: quad or tri.",
     "element*": "text: P1 or P2.", "size_m*": "number?: Size of the elements; null: of a file.",
     "nodes*": "integer: Number.", "elements*": "integer: Number.",
-    "half*": "truth: Half of a symmetric section?", "scaled_jacobian*": "number: Least quality.",
+    "half*": "boolean: Half of a symmetric section?", "scaled_jacobian*": "number: Least quality.",
     "edge_ratio*": "number: Longest over shortest edge of an element, greatest.",
     "nodes_of_nine_node_elements*": "integer: Of the mechanical mesh.",
     "through*": "integer: Elements through a layer.", "section*": "text: half or full.",
@@ -48,7 +48,7 @@ COMMON: dict[str, dict[str, Keys]] = {
 }  # fmt: skip
 #: Facts of a section.
 SECTION: Keys = {
-    "name": "text: Name.", "half": "truth: Half of a symmetric section?",
+    "name": "text: Name.", "half": "boolean: Half of a symmetric section?",
     "outer_diameter_m": "number: Of the unloaded tyre.", "overall_width_m": "number: Width.",
     "crown_thickness_m": "number: Thickness at the crown.", "meridian_length_m": "number: From crown to bead.",
     "shoulder_s_m": "number: Place of the shoulder along the meridian.", "bead_r_m": "number: Radius of the bead.",
@@ -67,9 +67,9 @@ INNER: dict[str, Keys] = {
     "run.sliding": {"phases": "list: Every phase with slip."},
     "run.sliding.phases[]": {
         "name": "text: Name.", "start": "number: Begin, s.", "end": "number: End, s.",
-        "locked": "truth: Does the wheel stand?", "sliding_speed": "number: Highest, m/s.",
+        "locked": "boolean: Does the wheel stand?", "sliding_speed": "number: Highest, m/s.",
         "pressure": "number: Of the contact at the end, Pa.", "friction": "number: At the highest sliding speed.",
-        "friction_lowest": "number: Least coefficient.", "capped": "truth: Limited by decomposition of the rubber?",
+        "friction_lowest": "number: Least coefficient.", "capped": "boolean: Limited by decomposition of the rubber?",
         "friction_work": "number: J, of one footprint.", "tread_heat": "number: The tread's part of it, J.",
         "tread_start": "number: Mean of the tread's surface, degC.", "tread_highest": "number: Its highest, degC.",
         "half_space_highest": "number?: The same of a half-space, for a locked wheel, degC.",
@@ -77,7 +77,7 @@ INNER: dict[str, Keys] = {
         "heated_depth": "number: Depth that the heat reaches, m.",
     },
     "run.feedback": {
-        "converged": "truth: Is the change below the tolerance?", "iterations": "integer: Runs.",
+        "converged": "boolean: Is the change below the tolerance?", "iterations": "integer: Runs.",
         "change_K": "list: Largest change of a temperature by every run.", "tolerance_K": "number: Allowed.",
         "start": "table: At the begin.", "end": "table: At the end.",
         "relative_modulus_at_end": "table: Region -> modulus over that of the card.",
@@ -125,8 +125,8 @@ INNER: dict[str, Keys] = {
     "sweep.envelope.rows[]": {
         "load": "text: Load.", "pressure": "text: Gauge pressure.", "load_N": "number: Load.",
         "pressure_Pa": "number: Gauge pressure.", "speed_m_s": "number?: Largest speed.",
-        "speed_km_h": "number?: The same.", "at_limit": "truth: Is the limit met there?",
-        "settled": "truth: Did the search end there? False: a larger speed may be safe.",
+        "speed_km_h": "number?: The same.", "at_limit": "boolean: Is the limit met there?",
+        "settled": "boolean: Did the search end there? False: a larger speed may be safe.",
         "tkph": "number?: Load times speed, tonne km/h.", "by": "text: reduced or full.",
         "error_K": "number?: Error of the reduced model.", "failure": "text: Why there is none; else empty.",
         "*": "any: The limited answer there.",
@@ -155,7 +155,7 @@ INNER: dict[str, Keys] = {
         "rolling_resistance_N": "number: By the loss.", "loss_factor": "number: Heat over that without inertia.",
         "strain_factor": "number: Strain over that without inertia.",
         "standing_wave_factor": "number?: The same by the effect standing-wave.",
-        "limited_by_loss_only": "truth: Beyond the critical speed without loss?",
+        "limited_by_loss_only": "boolean: Beyond the critical speed without loss?",
         "limited_because": "text: What the press says of it; else empty.",
     },
     "press --critical-speed.rises[].standing_wave": {
@@ -212,9 +212,9 @@ INNER: dict[str, Keys] = {
         "name": "text: Slider and speed.", "measured_K": "number: Of the paper.",
         "corrected_K": "number: Corrected by the paper.", "predicted_K": "number: Here.",
         "deviation_K": "number: Predicted minus corrected.",
-        "printed_follows": "truth: Does the printed value follow from the paper's equations?",
+        "printed_follows": "boolean: Does the printed value follow from the paper's equations?",
         "same_load_exit_rise_K": "number: Rise at the exit edge at the first row's load.",
         "needed_pressure_Pa": "number: Contact pressure with which the row holds.",
-        "above_melting": "truth: Would the ice melt?",
+        "above_melting": "boolean: Would the ice melt?",
     },
 }  # fmt: skip

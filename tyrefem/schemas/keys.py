@@ -80,7 +80,7 @@ OF_CLASS = {
     "MeasuredEntry.noise": "Standard deviation of a reading in this table; by default the sensors'.",
     "MeasuredEntry.time_offset": "Time of the drive at the table's time 0.",
     "StudyCard.section": "The tyre's section: a card's name or path, a size such as 205/60R15, or changes to one.",
-    "StudyCard.materials": "Region -> material card: a name or path, or a table { base = NAME, ... } with changes.",
+    "StudyCard.materials": "Region -> material card or { base = NAME, ... } with changes; by default that of a size.",
     "StudyCard.uncertainty": "Dotted name -> standard deviation of that number: a share, or a quantity.",
     "StudyCard.measured": "Measured tables, held against the study.",
     "StudyCard.effects": "Physical effects that the study has beside its laws.",

@@ -95,7 +95,7 @@ ROWS: dict[str, Keys] = {
         "rolling_radius": "number: m.", "footprint_length": "number: m.", "footprint_area": "number?: m2.",
         "road_fraction": "number: Share of a turn on the road.", "road_film": "number: W/m2/K, during contact.",
         "air_film": "number: W/m2/K.", "propagation_depth": "number?: Depth of a turn's temperature wave, m.",
-        "sliding_speed": "number: m/s.", "locked": "truth: Does the wheel stand?",
+        "sliding_speed": "number: m/s.", "locked": "boolean: Does the wheel stand?",
     },
     "run (campaign).cases[]": {
         "case": "text: Name of the case.", "note": "text: Note of the table of cases.",
@@ -115,11 +115,11 @@ ROWS: dict[str, Keys] = {
     },
     "compare.rows[]": {
         "run": "text: Measured run.", "sensor": "text: Sensor.", "phase": "text: Phase, or all.",
-        "hold_out": "truth: Is the run held out?", **_DEVIATION,
+        "hold_out": "boolean: Is the run held out?", **_DEVIATION,
         "n_effective": "number: Number of independent readings.", "largest_K": "number?: Largest deviation.",
         "at_s": "number?: When.", "u_num_K": "number: Standard uncertainty of the numerics.",
         "u_input_K": "number: Of the inputs.", "u_data_K": "number: Of the data.", "u_val_K": "number: All of them.",
-        "u_reading_K": "number: Of a single reading.", "beyond": "truth: Is the deviation beyond k u_val?",
+        "u_reading_K": "number: Of a single reading.", "beyond": "boolean: Is the deviation beyond k u_val?",
         "verdict": "text: In words.",
     },
     "compare.inputs[]": {
@@ -160,7 +160,7 @@ ROWS: dict[str, Keys] = {
     "sweep.optimum": {
         "changes": "table: Number -> value of the best variant.", "answers": "table: Answer -> value, by a full run.",
         "as_it_is": "table: The study's own answers.", "limits": "table: Answer -> limits.",
-        "evaluated": "integer: Number of variants.", "exhaustive": "truth: Was every variant tried?",
+        "evaluated": "integer: Number of variants.", "exhaustive": "boolean: Was every variant tried?",
         "ended": "text: Why the search ended.", "why_full_runs": "text?: Why no reduced model.",
         "asked": "written: As read; keys as in schemas/sweep.json.",
         "words": "list: In sentences.",
@@ -255,7 +255,7 @@ ROWS: dict[str, Keys] = {
         "name": "text: Slider and speed.", "observed_K": "number: Of the paper.", "uncertainty_K": "number: Its error.",
         "predicted_K": "number: Here.", "deviation_K": "number: Predicted minus observed.",
         "deviation": "number: The same over observed.", "printed_K": "number: Prediction of the paper.",
-        "printed_follows": "truth: Does it follow from the paper's equations?",
+        "printed_follows": "boolean: Does it follow from the paper's equations?",
     },
     "check.plugins[]": {**_PLUGIN, "contracts": "list: The contracts."},
     "check.plugins[].contracts[]": {

@@ -155,7 +155,7 @@ def _digest_of(value: Hashable) -> str:
 
 def _study(study: StudyData) -> list[Any]:
     cards = [library.load("section", study.data["section"], study.folder)[0]]
-    materials = completed_materials(study.data["section"], study.data["materials"])
+    materials = completed_materials(study.data["section"], study.data.get("materials", {}))
     cards += [library.load("material", reference, study.folder)[0] for reference in materials.values()]
     mesh = study.card.mesh.file
     mesh_file = hashlib.sha256(((study.folder or Path()) / mesh).read_bytes()).hexdigest() if mesh else None

@@ -110,12 +110,13 @@ def bundle(study: StudyData) -> Bundle:
     paths: dict[str, str] = {}
     near = study.folder
     loaded = [library.load("section", data["section"], near)[0]]
-    materials = completed_materials(data["section"], data["materials"])
+    materials = completed_materials(data["section"], data.get("materials", {}))
     loaded += [library.load("material", reference, near)[0] for reference in materials.values()]
     cards = hashlib.sha256(json.dumps(loaded, sort_keys=True, default=str).encode()).hexdigest()
     data["section"] = _packed("section", data["section"], near, files, paths)
     data["materials"] = {
-        region: _packed("material", reference, near, files, paths) for region, reference in data["materials"].items()
+        region: _packed("material", reference, near, files, paths)
+        for region, reference in data.get("materials", {}).items()
     }
     mesh = data.get("mesh", {})
     if isinstance(mesh.get("file"), str):
@@ -222,7 +223,7 @@ recent_tyres = RecentTyres()
 def _similarity(study: StudyData, other: StudyData) -> tuple[bool, bool, int]:
     """(same section and mesh, same drive and mechanics, number of equal materials), for comparison."""
     same = [study.data.get(table) == other.data.get(table) for table in ("section", "mesh", "drive", "mechanics")]
-    mine, theirs = study.data["materials"], other.data["materials"]
+    mine, theirs = (some.data.get("materials", {}) for some in (study, other))
     return same[0] and same[1], same[2] and same[3], sum(mine[region] == theirs.get(region) for region in mine)
 
 

@@ -3,7 +3,7 @@ An effect of your own
 =====================
 
 A lamp shines on the sidewall; no effect of the catalogue says so. An effect is a small class in a Python file: which
-quantity it changes, by how much, and where the number is from. `TYREFEM_EFFECTS` names the file's folder.
+quantity it changes, by how much, and where the number is from. `TYREFEM_PLUGINS` names the file's folder.
 """
 
 import tempfile
@@ -36,7 +36,7 @@ class Lamp(Effect):
 '''
 folder = tempfile.mkdtemp()
 Path(folder, "lamp.py").write_text(FILE, encoding="utf-8")
-use_effects(folder)  # in this process; the same as TYREFEM_EFFECTS=folder
+use_effects(folder)  # in this process; the same as TYREFEM_PLUGINS=folder
 
 study = tf.study("nasa-22x5.5-8pr").replace({"mesh.size": "8 mm"})
 lit = study.replace({"effects": [{"name": "lamp", "shine": "200 W/m**2"}]})

@@ -130,7 +130,8 @@ class Pressing(TyreOnRoad):
 
         Raises
         ------
-        InputError : the load is not positive, or more than the tyre can carry up to `bottoming`.
+        InputError : the load is not positive, too little to be resolved, or more than the tyre can carry up to
+            `bottoming`.
         """
         if not load > 0:
             raise InputError(f"the load must be positive, not {load:g} N", field="load")
@@ -149,6 +150,8 @@ class Pressing(TyreOnRoad):
                 break
             footprint = self.at_deflection(deflection, harmonics, footprint)
         most = self.at_deflection(self.bottoming * (1 - 1e-9), harmonics).load
+        if load < most:
+            raise InputError(f"the contact does not settle under {load:.5g} N with {harmonics} harmonics", field="load")
         raise InputError(
             f"the tyre cannot carry {load:.5g} N: {self.end} at {most:.5g} N ({self.bottoming * 1e3:.4g} mm)",
             field="load",

@@ -135,6 +135,12 @@ class Balance:
         pressing, motion = self.pressing, self.motion
         if deflection is not None:
             pressing.check(deflection)
+            if deflection > motion.largest_deflection:
+                raise InputError(
+                    f"a deflection of {deflection * 1e3:.5g} mm is too near {pressing.bottoming * 1e3:.5g} mm, where "
+                    f"{pressing.end}: large motion reaches {motion.largest_deflection * 1e3:.5g} mm",
+                    field="deflection",
+                )
             total, slope = deflection, 1.0
         else:
             assert load is not None
@@ -151,7 +157,7 @@ class Balance:
             next_deflection = min(now.deflection + max(-step, min(left, step)), motion.largest_deflection)
             if next_deflection == now.deflection:
                 raise InputError(
-                    f"the tyre cannot carry {load:.5g} N: the crown meets the rim at {now.load:.5g} N "
+                    f"the tyre cannot carry {load:.5g} N: {pressing.end} at {now.load:.5g} N "
                     f"({now.deflection * 1e3:.4g} mm)",
                     field="load",
                 )

@@ -41,8 +41,8 @@ ACCURACY, MOST = 1e-3, 24
 NEARLY = 1.5
 #: As the shape changes by a step of W, a wave follows by at most this many steps.
 FOLLOWS = 1.2
-#: Share of the section's width whose crown counts as a ring.
-CROWN = 0.5
+#: Share of the section's width, about its middle, whose crown counts as a ring.
+CROWN = 0.25
 #: Highest speed that is tried, m/s.
 FASTEST = 200.0
 
@@ -188,7 +188,7 @@ def ring_speed(study: StudyData, pressure: float) -> float:
     """
     mesh = study.mesh().mesh
     centres = mesh.p[:, mesh.t].mean(axis=1)
-    middle = np.abs(centres[1]) < CROWN / 2 * np.abs(mesh.p[1]).max()
+    middle = np.abs(centres[1]) < CROWN * np.abs(mesh.p[1]).max()
     density, area = np.zeros(mesh.nelements), np.zeros(mesh.nelements)
     for region, members in mesh.subdomains.items():
         if region in study.materials:

@@ -80,7 +80,7 @@ class TyreForces(Brief):
 
     @functools.cached_property
     def fit(self) -> MagicFormulaFit:
-        """The Magic Formula of the points; its nominal load is the drive's."""
+        """The Magic Formula of the points; its nominal load is that of `tyre_forces`."""
         pressed = self.wheel.pressed
         return fit_magic_formula(
             self.points, self.wheel.rolling.reach, nominal_load=pressed.footprint.load,
@@ -140,7 +140,7 @@ def tyre_forces(
     Parameters
     ----------
     loads : N; by default `LOADS` times the drive's load. The nominal load is the drive's, or their mean where the
-        drive's is none of theirs.
+        drive's lies outside of their range.
     slip_angles : rad, either sign. cambers : rad, beside none. slips : 1.
     harmonics : of all points. progress : called with the number of curves done, and of all.
     wheel : as in `roll`, without load, deflection and camber.

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
+from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
 from tyrefem.mechanics.footprint import press as presses
 from tyrefem.mechanics.footprint.press_order import press_order
@@ -24,8 +25,10 @@ def press(study: StudyData, *, speed: float | None = None, **options: Any) -> pr
 
     Raises
     ------
-    InputError : as `footprint.press.press`; a speed beyond the tread's critical speed.
+    InputError : as `footprint.press.press`; a speed that is negative, or beyond the tread's critical speed.
     """
+    if speed is not None and not speed >= 0:
+        raise InputError(f"must be at least 0 m/s, not {speed:g} m/s", field="speed")
     if not study.card.mechanics.rolling:
         return replace(presses.press(study, **options), given_speed=speed)
 

@@ -202,4 +202,4 @@ def slip_curve(
 
 
 def _listed(values: float | Sequence[float] | None) -> list[float] | None:
-    return None if values is None or isinstance(values, int | float) else [float(value) for value in values]
+    return None if values is None or np.ndim(values) == 0 else [float(value) for value in np.asarray(values)]
