@@ -271,3 +271,25 @@ def test_the_first_reading_of_a_toa5_table_without_kinds_is_kept(tmp_path: Path)
     without = TOA5.replace('"","","Smp","Avg"', '"","","",""')
     rows = '"2026-05-01 10:00:00",0,25.1,77\n"2026-05-01 10:00:10",1,26.1,77\n'
     assert only(tmp_path, without + rows).times.tolist() == [0, 10]
+
+
+@pytest.mark.parametrize("delimiter", [";", "\t"])
+def test_a_toa5_table_saved_again_by_a_spreadsheet_is_read(tmp_path: Path, delimiter: str) -> None:
+    rows = '"2026-05-01 10:00:00",0,25.1,77\n"2026-05-01 10:00:10.5",1,26.1,\n'
+    text = (TOA5 + rows).replace("crown, inner", "crown").replace(",", delimiter)
+    run = only(tmp_path, text)
+    assert run.times.tolist() == [0, 10.5]
+    assert run.temperatures["crown"].tolist() == [25.1, 26.1]
+    assert run.channels == ("RECORD [RN]",)
+
+
+@pytest.mark.parametrize("kinds", ['"","","Smp","Avg"\n', '"","","",""\n', ""])
+def test_a_toa5_table_without_readings_says_so(tmp_path: Path, kinds: str) -> None:
+    heading = TOA5.rsplit("\n", 2)[0] + "\n"
+    assert refused(tmp_path, heading + kinds).endswith("logger.csv: has a heading but no readings")
+
+
+def test_numbers_with_exponents_are_no_names_of_runs(tmp_path: Path) -> None:
+    words = refused(tmp_path, "time [s],crown\n0,2.50E+01\n1,2.6e1\n")
+    assert "'crown' has no unit" in words
+    assert "has words" not in words

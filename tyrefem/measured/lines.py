@@ -134,7 +134,7 @@ def split(text: str, path: Path, rename: Mapping[str, str] | None = None) -> Lin
         raise NoTableError("has only comments, no heading and no readings", file=path)
     toa5 = one_heading(content)
     if toa5 is not None:
-        comments, content = [toa5[0].replace('"', ""), *comments], toa5[1]
+        comments, content = [toa5[0].replace('"', "").strip(DELIMITERS + " "), *comments], toa5[1]
     try:
         position, delimiter = _heading(content, path, rename)
     except InputError as error:
@@ -143,6 +143,8 @@ def split(text: str, path: Path, rename: Mapping[str, str] | None = None) -> Lin
     heading = tuple(_without_trailing_empty(_cells(line, delimiter, number, path)))
     place = f", line {number}," if position else ""
     rows, numbers = _rows(content[position + 1 :], delimiter, heading, path, place)
+    if toa5 is not None and not rows:
+        raise InputError("has a heading but no readings", file=path)
     preamble = [text.strip(DELIMITERS + ' "') for _, text in content[:position]]
     notes: tuple[str, ...] = ()
     if rows:
