@@ -94,9 +94,10 @@ def _is_of_histories(line: str) -> bool:
 
 
 def _content(text: str) -> list[tuple[int, str]]:
-    """The lines that are not blank or comments, with their numbers in the file."""
+    """The lines with a filled cell that are no comments, with their numbers in the file; comments may be in quotes."""
     lines = enumerate(re.split("\r\n|\r|\n", text), 1)
-    return [(number, line) for number, line in lines if line.strip() and not line.lstrip().startswith("#")]
+    filled = ((number, line) for number, line in lines if line.strip().strip(DELIMITERS + ' "'))
+    return [(number, line) for number, line in filled if not line.lstrip().lstrip('"').startswith("#")]
 
 
 def _delimiter(heading: str) -> str:
