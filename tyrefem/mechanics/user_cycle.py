@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import sys
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -62,8 +63,13 @@ def guarded_call(cycle_of: Any, place: str, origin: Origin) -> Callable[..., Any
     if not callable(cycle_of):
         raise plugin_error(origin, place, f"must be a function from load case to strain cycle, not {cycle_of!r:.60}")
     if not hasattr(cycle_of, "__code__"):
-        return guarded(lambda *cases: cycle_of(*cases), place, origin)
+        return guarded(lambda *cases: cycle_of(*cases), place, origin, _file_of(cycle_of))
     return guarded(cycle_of, place, origin)
+
+
+def _file_of(thing: Any) -> str:
+    """The Python file of an object's class; empty where it has none."""
+    return str(getattr(sys.modules.get(type(thing).__module__), "__file__", None) or "")
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,12 +88,19 @@ class UserCycle:
     @property
     def zones(self) -> tuple[Zone, ...]:
         """The zones."""
-        return tuple(self.cycle.zones)
+        return tuple(self._given_zones)
+
+    @property
+    def _given_zones(self) -> Any:
+        """The zones as the user's cycle gives them; errors name the plugin."""
+        place = f"class {self.name}, zones"
+        return guarded(lambda: self.cycle.zones, place, self.origin, _file_of(self.cycle))()
 
     def energy_density(self, zone: str, points: Array) -> Array:
         """U, J/m3, at points (2, n) of a zone."""
         place = f"class {self.name}, energy_density"
-        values = guarded(lambda: self.cycle.energy_density(zone, points), place, self.origin)()
+        file = _file_of(self.cycle)
+        values = guarded(lambda: self.cycle.energy_density(zone, points), place, self.origin, file)()
         try:
             return np.broadcast_to(np.asarray(values, dtype=float), points.shape[1:])
         except (TypeError, ValueError):
@@ -96,7 +109,7 @@ class UserCycle:
 
     def trials(self, section: Section) -> Iterator[Trial]:
         """Zones of the section's regions, and energies at points of each."""
-        fault = _zones_fault(getattr(self.cycle, "zones", None), section)
+        fault = _zones_fault(self._given_zones, section)
         yield Trial("zones are parts of the section's regions", fault and f"the strain cycle's {fault}")
         if fault:
             return
