@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from tyrefem.cli import main
-from tyrefem.contracts import TEMPLATES
+from tyrefem.contracts import TEMPLATES, check_file
 
 Write = Callable[..., Path]
 RUN = ("run", "nasa-22x5.5-8pr", "--no-pictures", "--no-vtk", "--set", "mesh.size=12 mm", "--set",
@@ -101,6 +101,27 @@ def test_a_failing_check_has_exit_code_2(write: Write, capfd: pytest.CaptureFixt
     assert main(["check", str(file), "--json"]) == 2
     contracts = json.loads(capfd.readouterr().out)
     assert (contracts["failed"], contracts["contracts"]) == (2, 4)
+
+
+def test_a_copy_of_a_loaded_file_is_checked(write: Write, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    copy = tmp_path / "copies" / "lamp.py"
+    copy.parent.mkdir()
+    copy.write_bytes(write("effect").read_bytes())
+    assert main(["check", str(copy)]) == 0
+    assert "effect 'lamp', class Lamp" in capfd.readouterr().out
+
+
+@pytest.mark.parametrize("name", [None, "nasa-22x5.5-8pr", "nasa-brake-yaw-skid"])
+def test_a_sliding_law_is_tried_with_slip(folder: Path, name: str | None) -> None:
+    file = folder / "grip.py"
+    file.write_text(
+        "from typing import Literal\nfrom tyrefem.boundaries.sliding import UniformSliding\n\n\n"
+        'class Grip(UniformSliding):\n    """mu = 0.4."""\n\n    law: Literal["grip"]\n\n'
+        "    def friction(self, sliding_speed, rolling_speed):\n        return 0.4\n",
+        encoding="utf-8",
+    )
+    checked = check_file(file, name)
+    assert (checked.count, checked.failed) == (4, 0)
 
 
 def test_a_file_that_cannot_be_loaded_is_listed_once(write: Write, capfd: pytest.CaptureFixture[str]) -> None:

@@ -47,8 +47,21 @@ def boundary_law(cls: type[Law], study_name: str | None = None) -> Iterator[Cont
     yield pickles(law)
     changes: dict[str, Any] = {f"boundaries.{cls.side}": table}
     if cls.side == "sliding" and not getattr(cls, "rolls", False):
-        changes["drive.phases.rolling.slip"] = 0.05
+        changes |= _slip(study_name)
     yield finite_run_of(changes, study_name)
+
+
+def _slip(study_name: str | None) -> dict[str, float]:
+    """Slip for the first phase of the study that moves; none where a phase slides already."""
+    try:
+        study = quick_study(study_name)
+    except InputError:
+        return {}  # the run says what is wrong with it
+    phases = study.card.drive.phases
+    moving = next((phase.name for phase in phases if not phase.stands), None)
+    if moving is None or any(phase.slides for phase in phases):
+        return {}
+    return {f"drive.phases.{moving}.slip_ratio" if "phases" in study.data["drive"] else "drive.slip_ratio": 0.05}
 
 
 def tan_delta_law(cls: type[TanDeltaLaw], study_name: str | None = None) -> Iterator[Contract]:
