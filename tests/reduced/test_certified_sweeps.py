@@ -141,6 +141,27 @@ def test_the_estimated_error_is_that_of_the_modes_left_out(trained: Surrogate, p
         assert better.error < worse.error
 
 
+def test_an_estimate_is_that_of_the_variant_s_sensors(trained: Surrogate, plan: Plan) -> None:
+    """With few modes and a single hot node the sensor decides: 0.14 and 0.75 K at its two places."""
+    V, hot = trained.model.V, {"sidewall": trained.model.hot["sidewall"][:1]}
+    few = replace(trained.model, V=V[:, :5], further=V[:, 5:], hot=hot)
+    places = [{"s": "20 mm", "depth": "1 mm"}, {"s": "50 mm", "depth": "8 mm"}]
+    studies = [plan.study.replace({"sensors": {"moved": place}}) for place in places]
+    together = [outcome.error for outcome in reduced_answers(few, studies, None)]  # type: ignore[union-attr]
+    alone = [reduced_answers(few, [each], None)[0].error for each in studies]  # type: ignore[union-attr]
+    assert together == pytest.approx(alone, rel=1e-3)
+    assert alone[1] > 2 * alone[0]
+
+
+def test_readings_of_a_late_clock_are_those_of_the_whole_result(trained: Surrogate, plan: Plan) -> None:
+    late = plan.study.replace({"effects": [{"name": "clock-offset", "late": "15 s"}]})
+    ((_, variant),) = reduced_outcomes(trained.model, [late])
+    assert isinstance(variant, Variant)
+    whole = variant.result.readings
+    assert np.abs(variant.readings - whole).to_numpy().max() < 1e-6
+    assert np.abs(whole["contained-air"] - variant.gas_temperature).max() > 0.5
+
+
 def test_a_model_without_further_modes_estimates_nothing(trained: Surrogate, plan: Plan) -> None:
     (outcome,) = reduced_answers(replace(trained.model, further=None), [plan.study.replace(plan.variants[1])], None)
     assert isinstance(outcome, Answered)
