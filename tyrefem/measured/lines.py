@@ -106,6 +106,11 @@ def _beside(path: Path) -> str:
     return nearest(path.name, names) if names else ""
 
 
+def is_comment(line: str) -> bool:
+    """Whether a line is a comment, perhaps in quotes."""
+    return _COMMENT.match(line) is not None
+
+
 def split(text: str, path: Path, rename: Mapping[str, str] | None = None) -> Lines:
     """The cells of a table's text. Blank lines, and lines that begin with ``#`` or ``//``, are not rows.
 
@@ -126,7 +131,7 @@ def split(text: str, path: Path, rename: Mapping[str, str] | None = None) -> Lin
     lines = re.split("\r\n|\r|\n", text)
     comments, content = [], []
     for number, line in enumerate(lines, 1):
-        if _COMMENT.match(line):
+        if is_comment(line):
             comments.append(_COMMENT.sub("", line).strip(DELIMITERS + ' "'))
         elif line.strip(DELIMITERS + ' "'):
             content.append((number, line))
