@@ -257,6 +257,31 @@ def test_phases_ramps_and_a_lumped_rim() -> None:
     assert variant.rolling_resistance.phase == full.rolling_resistance.phase
 
 
+ROLL, REST = {"name": "roll", "duration": "40 s"}, {"name": "rest", "duration": "40 s", "speed": "0 mph"}
+
+
+@pytest.mark.parametrize(
+    ("key", "values"),
+    [
+        ("boundaries.contained_air", [{"law": "gas"}, {"law": "held", "temperature": "40 degC"}]),
+        ("drive.phases", [[ROLL], [ROLL, REST]]),
+        ("sensors", [{}, {"crown": {"s": "20 mm", "depth": "2 mm"}}]),
+    ],
+)
+def test_variants_with_and_without_a_reservoir_a_phase_or_a_sensor(key: str, values: list[object]) -> None:
+    """Each has another number of unknowns, times or readings than the study."""
+    base = study("nasa-22x5.5-8pr", {"mesh.size": "14 mm", "mesh.element": "P1", key: values[0]})
+    short = base if key == "drive.phases" else base.replace({"drive.duration": "60 s"})
+    plan = plan_of(short, {key: values, "drive.load": ("2200 lbf", "3200 lbf")}, sample="sobol", count=24)
+    trained = surrogate(plan, tolerance=0.05)
+    studies = [short.replace({key: value, "drive.load": "2900 lbf"}) for value in values]
+    for fresh, outcome in zip(studies, trained.answers(studies), strict=True):
+        assert isinstance(outcome, Answered)
+        full = answers(run(fresh))
+        assert outcome.answers.keys() == full.keys()
+        assert temperature_error(outcome.answers, full) < 0.05
+
+
 def test_a_full_section_is_its_half_twice(tyre: Study) -> None:
     whole = tyre.replace({"mesh.section": "full", "drive.duration": "60 s"})
     plan = plan_of(whole, {"drive.ambient": ("15 degC", "25 degC")}, sample="sobol", count=12)
