@@ -10,6 +10,7 @@ import pytest
 
 from tyrefem.errors import InputError
 from tyrefem.measured import MeasuredRun, read_table
+from tyrefem.measured.lines import LONGEST_PREAMBLE
 
 pytestmark = pytest.mark.fast
 
@@ -293,3 +294,9 @@ def test_numbers_with_exponents_are_no_names_of_runs(tmp_path: Path) -> None:
     words = refused(tmp_path, "time [s],crown\n0,2.50E+01\n1,2.6e1\n")
     assert "'crown' has no unit" in words
     assert "has words" not in words
+
+
+def test_as_many_lines_may_precede_the_heading_as_is_said(tmp_path: Path) -> None:
+    table_below = "time [s],crown [degC]\n0,25\n"
+    assert len(only(tmp_path, "Bank 3\n" * LONGEST_PREAMBLE + table_below).comments) == LONGEST_PREAMBLE == 100
+    assert "no time column" in refused(tmp_path, "Bank 3\n" * (LONGEST_PREAMBLE + 1) + table_below)

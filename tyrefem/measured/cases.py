@@ -82,7 +82,7 @@ def looks_like_cases(path: Path) -> bool:
     of_sheets = texts(path)
     if len(of_sheets) > 1:
         return False
-    lines = [line for _, line in _content(*of_sheets.values())[:LONGEST_PREAMBLE]]
+    lines = [line for _, line in _content(*of_sheets.values())[: LONGEST_PREAMBLE + 1]]
     cells = [cell.strip(' "') for cell in lines[0].split(_delimiter(lines[0]))] if lines else []
     return "name" in cells and not any(_is_of_histories(line) for line in lines)
 

@@ -167,7 +167,7 @@ def _heading(content: list[tuple[int, str]], path: Path, rename: Mapping[str, st
     """Index and delimiter of the line with a time column: the first of those of the lowest `_rank`."""
     best: tuple[int, int, str] | None = None
     surest = 0 if rename else 2
-    for position, (number, line) in enumerate(content[:LONGEST_PREAMBLE]):
+    for position, (number, line) in enumerate(content[: LONGEST_PREAMBLE + 1]):
         if best is not None and best[0] <= surest:
             break
         for delimiter in DELIMITERS:
