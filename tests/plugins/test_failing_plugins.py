@@ -164,6 +164,17 @@ def test_wrong_strain_cycles_are_refused(write: Write, fault: str) -> None:
     assert words in str(caught.value)
 
 
+def test_a_class_whose_check_fails_is_left_out(write: Write) -> None:
+    """Two arguments of a Prior in each other's place, which every command would meet."""
+    file = write("effect", ('"flux through the sidewall", 50.0', '50.0, "flux through the sidewall"'))
+    with pytest.warns(PluginWarning, match="class Lamp: effect 'lamp' cannot be checked: TypeError"):
+        assert registry().plugins == ()
+    assert study({}).name
+    with pytest.raises(tf.InputError, match="class Lamp: effect 'lamp' cannot be checked") as caught:
+        study(USES["effect"])
+    assert str(file) in str(caught.value)
+
+
 @pytest.mark.parametrize("broken", ["return tuple(Zone(", "return (CROWN"])
 def test_an_error_of_a_strain_cycle_has_its_line(write: Write, broken: str) -> None:
     file = write("strain-law", (broken, f"return 1 / 0 or {broken.removeprefix('return ')}"))

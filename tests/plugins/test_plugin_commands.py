@@ -124,6 +124,23 @@ def test_a_sliding_law_is_tried_with_slip(folder: Path, name: str | None) -> Non
     assert (checked.count, checked.failed) == (4, 0)
 
 
+@pytest.mark.parametrize(
+    ("kind", "change", "words"),
+    [
+        ("boundary-law", ('"30 W/m**2/K"}', '"30 W/m**2/K"}, 1'), "example: must be a table"),
+        ("sweep-answer", ("    key: ClassVar", "    example: ClassVar = None\n    key: ClassVar"), "must be a table"),
+        ("strain-law", ("float | None] = 2.0", "str] = 'two'"), "its contracts can be tried: ValueError"),
+    ],
+)
+def test_an_attribute_of_another_type_is_a_contract_that_fails(
+    write: Write, kind: str, change: tuple[str, str], words: str, capfd: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["check", str(write(kind, change))]) == 2
+    out = capfd.readouterr().out
+    assert "FAIL  its contracts can be tried: " in out
+    assert words in out
+
+
 def test_a_file_that_cannot_be_loaded_is_listed_once(write: Write, capfd: pytest.CaptureFixture[str]) -> None:
     file = write("effect", ("class Lamp", "clas Lamp"))
     assert main(["check", str(file)]) == 2

@@ -16,9 +16,22 @@ from tyrefem.materials.road_friction import FrictionOnRoad
 from tyrefem.materials.tan_delta_law import TEMPERATURES, TanDeltaLaw
 
 
+def example_of(cls: type[Any]) -> dict[str, Any]:
+    """The ``example`` of a law or answer; empty without one.
+
+    Raises
+    ------
+    InputError : it is no table.
+    """
+    example = getattr(cls, "example", {})
+    if not isinstance(example, Mapping):
+        raise InputError(f"must be a table, as example: ClassVar[dict] = {{...}}, not {example!r:.60}", field="example")
+    return dict(example)
+
+
 def example_table(cls: type[Any], name: str) -> dict[str, Any]:
     """A table of a law as in a file: its ``example``, and the first example of every other required field."""
-    table = {"law": name, **getattr(cls, "example", {})}
+    table = {"law": name, **example_of(cls)}
     for key, field in cls.model_fields.items():
         if field.is_required() and key not in table and field.examples:
             table[key] = field.examples[0]
