@@ -147,6 +147,8 @@ STRAINS = {
     "negative": ("return (CROWN", "return -(CROWN", "energy_density('carcass'"),
     "shape": ("return (CROWN", "return np.ones(3) * (CROWN", "class CrownToBead, energy_density: ValueError"),
     "no zones": ("return tuple(Zone(", "return () and tuple(Zone(", "the strain cycle's zones must be a tuple"),
+    "no return": ("return (CROWN", "(CROWN", "numbers for 7 points, not None"),
+    "zones of one name": ("Zone(region, region, region)", "Zone('all', region, region)", "the name 'all' twice"),
     "zones that fail": ("return tuple(Zone(", "return tuple(Zon(", "class CrownToBead, zones: NameError"),
     "unknown region": ("Zone(region, region, region)", "Zone(region, 'belt', region)", "name the region 'belt'"),
     "no function": ("return lambda case: ", "return ", "NameError"),

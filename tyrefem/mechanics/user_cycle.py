@@ -101,11 +101,13 @@ class UserCycle:
         place = f"class {self.name}, energy_density"
         file = _file_of(self.cycle)
         values = guarded(lambda: self.cycle.energy_density(zone, points), place, self.origin, file)()
+        must = f"must give {points.shape[1]} numbers for {points.shape[1]} points, not "
+        if values is None:  # a method without return, which numpy takes for nan
+            raise plugin_error(self.origin, place, f"{must}None")
         try:
             return np.broadcast_to(np.asarray(values, dtype=float), points.shape[1:])
         except (TypeError, ValueError):
-            must = f"must give {points.shape[1]} numbers for {points.shape[1]} points, not {np.shape(values)}"
-            raise plugin_error(self.origin, place, must) from None
+            raise plugin_error(self.origin, place, f"{must}{np.shape(values)}") from None
 
     def trials(self, section: Section) -> Iterator[Trial]:
         """Zones of the section's regions, and energies at points of each."""
@@ -136,7 +138,9 @@ def _zones_fault(zones: Any, section: Section) -> str | None:
     unknown = [zone.region for zone in zones if zone.region not in section.regions]
     if unknown:
         return f"zones name the region '{unknown[0]}', which section '{section.name}' does not have"
-    return None
+    names = [zone.name for zone in zones]
+    twice = next((name for name in names if names.count(name) > 1), None)
+    return None if twice is None else f"zones have the name '{twice}' twice: only the last would heat"
 
 
 def points_of(section: Section, zone: Zone) -> Array:
