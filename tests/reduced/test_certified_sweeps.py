@@ -178,6 +178,9 @@ def test_outside_its_box_it_is_not_asked(trained: Surrogate, tyre: Study) -> Non
     # What the box does not vary at all is as the study has it.
     other = trained.answers([inside.replace({"drive.ambient": "5 degC"})])[0].reason
     assert "drive.ambient" in other
+    # A number that the study does not have.
+    deflected = trained.answers([inside.replace({"drive.load": None, "drive.deflection": "20 mm"})])[0]
+    assert deflected.reason.startswith("drive.load: not set in the study")
 
 
 def test_another_mesh_is_refused(trained: Surrogate, tyre: Study) -> None:
