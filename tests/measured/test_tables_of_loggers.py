@@ -300,3 +300,10 @@ def test_as_many_lines_may_precede_the_heading_as_is_said(tmp_path: Path) -> Non
     table_below = "time [s],crown [degC]\n0,25\n"
     assert len(only(tmp_path, "Bank 3\n" * LONGEST_PREAMBLE + table_below).comments) == LONGEST_PREAMBLE == 100
     assert "no time column" in refused(tmp_path, "Bank 3\n" * (LONGEST_PREAMBLE + 1) + table_below)
+
+
+def test_a_sensor_may_be_called_run(tmp_path: Path) -> None:
+    run = only(tmp_path, "time [s],run [degC]\n0,25\n10,26\n")
+    assert run.temperatures["run"].tolist() == [25.0, 26.0]
+    (again,) = read_table(run.write(tmp_path / "again.csv"))
+    assert again.temperatures.equals(run.temperatures)
