@@ -31,6 +31,11 @@ def test_as_spreadsheets_write_it(tmp_path: Path, encoding: str, ending: str) ->
     assert read(tmp_path, text.encode(encoding)) == {"a": {"drive.speed": "20 mph"}}
 
 
+def test_rows_without_a_filled_cell_and_quoted_comments_are_no_cases(tmp_path: Path) -> None:
+    text = '"# by hand, 3 May",\nname,drive.speed [mph]\na,20\n,\n"",""\n'
+    assert read(tmp_path, text) == {"a": {"drive.speed": "20 mph"}}
+
+
 @pytest.mark.parametrize("delimiter", [";", "\t"])
 def test_semicolons_and_decimal_commas(tmp_path: Path, delimiter: str) -> None:
     text = "name|drive.speed [mph]|note|section\nslow|12,5|a, b|mine\nfast|35||\n".replace("|", delimiter)

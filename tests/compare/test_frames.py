@@ -110,3 +110,11 @@ def test_readings_of_a_result_by_time() -> None:
     readings = pd.DataFrame({"time_s": [0.0, 5.0], "crown": [20.0, 21.0]}).set_index("time_s")
     (run,) = frame_lines(readings).read().runs
     assert run.times.tolist() == [0.0, 5.0]
+
+
+def test_a_run_whose_name_would_begin_a_comment_is_kept() -> None:
+    """In a file such rows are comments; a frame has none."""
+    frame = pd.DataFrame({"run": ["#1", "#1", "b"], "time [s]": [0, 10, 0], "crown [degC]": [20.0, 21.0, 22.0]})
+    first, second = frame_lines(frame).read().runs
+    assert (first.name, first.times.tolist()) == ("#1", [0.0, 10.0])
+    assert (second.name, second.temperatures["crown"].tolist()) == ("b", [22.0])

@@ -10,6 +10,7 @@ import pytest
 
 from tyrefem.errors import InputError
 from tyrefem.measured import MeasuredRun, read_table
+from tyrefem.measured.lines import LONGEST_PREAMBLE
 
 pytestmark = pytest.mark.fast
 
@@ -271,3 +272,38 @@ def test_the_first_reading_of_a_toa5_table_without_kinds_is_kept(tmp_path: Path)
     without = TOA5.replace('"","","Smp","Avg"', '"","","",""')
     rows = '"2026-05-01 10:00:00",0,25.1,77\n"2026-05-01 10:00:10",1,26.1,77\n'
     assert only(tmp_path, without + rows).times.tolist() == [0, 10]
+
+
+@pytest.mark.parametrize("delimiter", [";", "\t"])
+def test_a_toa5_table_saved_again_by_a_spreadsheet_is_read(tmp_path: Path, delimiter: str) -> None:
+    rows = '"2026-05-01 10:00:00",0,25.1,77\n"2026-05-01 10:00:10.5",1,26.1,\n'
+    text = (TOA5 + rows).replace("crown, inner", "crown").replace(",", delimiter)
+    run = only(tmp_path, text)
+    assert run.times.tolist() == [0, 10.5]
+    assert run.temperatures["crown"].tolist() == [25.1, 26.1]
+    assert run.channels == ("RECORD [RN]",)
+
+
+@pytest.mark.parametrize("kinds", ['"","","Smp","Avg"\n', '"","","",""\n', ""])
+def test_a_toa5_table_without_readings_says_so(tmp_path: Path, kinds: str) -> None:
+    heading = TOA5.rsplit("\n", 2)[0] + "\n"
+    assert refused(tmp_path, heading + kinds).endswith("logger.csv: has a heading but no readings")
+
+
+def test_numbers_with_exponents_are_no_names_of_runs(tmp_path: Path) -> None:
+    words = refused(tmp_path, "time [s],crown\n0,2.50E+01\n1,2.6e1\n")
+    assert "'crown' has no unit" in words
+    assert "has words" not in words
+
+
+def test_as_many_lines_may_precede_the_heading_as_is_said(tmp_path: Path) -> None:
+    table_below = "time [s],crown [degC]\n0,25\n"
+    assert len(only(tmp_path, "Bank 3\n" * LONGEST_PREAMBLE + table_below).comments) == LONGEST_PREAMBLE == 100
+    assert "no time column" in refused(tmp_path, "Bank 3\n" * (LONGEST_PREAMBLE + 1) + table_below)
+
+
+def test_a_sensor_may_be_called_run(tmp_path: Path) -> None:
+    run = only(tmp_path, "time [s],run [degC]\n0,25\n10,26\n")
+    assert run.temperatures["run"].tolist() == [25.0, 26.0]
+    (again,) = read_table(run.write(tmp_path / "again.csv"))
+    assert again.temperatures.equals(run.temperatures)

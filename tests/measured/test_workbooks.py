@@ -45,6 +45,14 @@ def test_a_sheet_is_read_like_the_same_table_as_csv(tmp_path: Path) -> None:
     assert run.notes == ("units are those of line 4",)
 
 
+def test_a_toa5_table_in_a_sheet_is_read(tmp_path: Path) -> None:
+    head = [["TOA5", "CR1000X", "12345"], ["TIMESTAMP", "RECORD", "crown"], ["TS", "RN", "Deg C"], [None, None, "Avg"]]
+    stamps = [dt.datetime(2026, 5, 1, 10, 0, second) for second in (0, 10)]
+    (run,) = read_table(book(tmp_path / "log.xlsx", log=[*head, [stamps[0], 0, 25.1], [stamps[1], 1, 26.1]]))
+    assert run.times.tolist() == [0.0, 10.0]
+    assert run.temperatures["crown"].tolist() == [25.1, 26.1]
+
+
 def test_sheets_are_runs_and_others_are_left_out_with_a_note(tmp_path: Path) -> None:
     path = book(
         tmp_path / "two.xlsx", Setup=[["tyre", "22x5.5"]], slow=[HEAD, *ROWS], fast=[HEAD[:2], [0, 30], [60, 40]]

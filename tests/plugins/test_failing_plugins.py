@@ -91,6 +91,8 @@ def test_a_file_that_cannot_be_loaded_is_named_where_it_is_used(
 VALUES = {
     "film nan": ("boundary-law", "self.at_rest + ", "np.nan + ", "film(0 m/s) must be a finite number of at least 0"),
     "film text": ("boundary-law", "return self", "return 'much' #", "must be a finite number of at least 0 W/m2/K"),
+    "film without return": ("boundary-law", "return self", "self", "of at least 0 W/m2/K, not None"),
+    "film as text": ("boundary-law", "return self", "return '30' #", "of at least 0 W/m2/K, not '30'"),
     "film negative": ("boundary-law", "return self", "return -self", "not -6"),
     "film array": ("boundary-law", "return self", "return np.ones(3) #", "not an array of shape (3,)"),
     "tan delta shape": ("tan-delta-law", "return self", "return np.ones(3) #", "must give shape (13,), not (3,)"),
@@ -145,6 +147,9 @@ STRAINS = {
     "negative": ("return (CROWN", "return -(CROWN", "energy_density('carcass'"),
     "shape": ("return (CROWN", "return np.ones(3) * (CROWN", "class CrownToBead, energy_density: ValueError"),
     "no zones": ("return tuple(Zone(", "return () and tuple(Zone(", "the strain cycle's zones must be a tuple"),
+    "no return": ("return (CROWN", "(CROWN", "numbers for 7 points, not None"),
+    "zones of one name": ("Zone(region, region, region)", "Zone('all', region, region)", "the name 'all' twice"),
+    "zones that fail": ("return tuple(Zone(", "return tuple(Zon(", "class CrownToBead, zones: NameError"),
     "unknown region": ("Zone(region, region, region)", "Zone(region, 'belt', region)", "name the region 'belt'"),
     "no function": ("return lambda case: ", "return ", "NameError"),
 }
@@ -159,6 +164,40 @@ def test_wrong_strain_cycles_are_refused(write: Write, fault: str) -> None:
     assert str(file) in str(caught.value)
     assert "class CrownToBead" in str(caught.value)
     assert words in str(caught.value)
+
+
+def test_a_class_whose_check_fails_is_left_out(write: Write) -> None:
+    """Two arguments of a Prior in each other's place, which every command would meet."""
+    file = write("effect", ('"flux through the sidewall", 50.0', '50.0, "flux through the sidewall"'))
+    with pytest.warns(PluginWarning, match="class Lamp: effect 'lamp' cannot be checked: TypeError"):
+        assert registry().plugins == ()
+    assert study({}).name
+    with pytest.raises(tf.InputError, match="class Lamp: effect 'lamp' cannot be checked") as caught:
+        study(USES["effect"])
+    assert str(file) in str(caught.value)
+
+
+@pytest.mark.parametrize("broken", ["return tuple(Zone(", "return (CROWN"])
+def test_an_error_of_a_strain_cycle_has_its_line(write: Write, broken: str) -> None:
+    file = write("strain-law", (broken, f"return 1 / 0 or {broken.removeprefix('return ')}"))
+    line = 1 + file.read_text(encoding="utf-8").partition("1 / 0")[0].count("\n")
+    with pytest.raises(tf.InputError, match=rf"ZeroDivisionError: division by zero \(line {line}\)"):
+        study(USES["strain-law"]).run()
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        (b"x = 1\n\0", "Error: source code string cannot contain null bytes"),
+        (b"exec(compile('a = (', 'helper.py', 'exec'))\n", "cannot be loaded: line 1 of helper.py: SyntaxError"),
+    ],
+)
+def test_a_line_that_is_not_of_the_file_is_not_said_to_be(folder: Path, content: bytes, words: str) -> None:
+    (folder / "broken.py").write_bytes(content)
+    with pytest.warns(PluginWarning) as warned:
+        registry()
+    assert words in str(warned[0].message)
+    assert "None" not in str(warned[0].message)
 
 
 COLLISIONS = {

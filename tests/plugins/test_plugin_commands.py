@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from tyrefem.cli import main
-from tyrefem.contracts import TEMPLATES
+from tyrefem.contracts import TEMPLATES, check_file
 
 Write = Callable[..., Path]
 RUN = ("run", "nasa-22x5.5-8pr", "--no-pictures", "--no-vtk", "--set", "mesh.size=12 mm", "--set",
@@ -101,6 +101,44 @@ def test_a_failing_check_has_exit_code_2(write: Write, capfd: pytest.CaptureFixt
     assert main(["check", str(file), "--json"]) == 2
     contracts = json.loads(capfd.readouterr().out)
     assert (contracts["failed"], contracts["contracts"]) == (2, 4)
+
+
+def test_a_copy_of_a_loaded_file_is_checked(write: Write, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    copy = tmp_path / "copies" / "lamp.py"
+    copy.parent.mkdir()
+    copy.write_bytes(write("effect").read_bytes())
+    assert main(["check", str(copy)]) == 0
+    assert "effect 'lamp', class Lamp" in capfd.readouterr().out
+
+
+@pytest.mark.parametrize("name", [None, "nasa-22x5.5-8pr", "nasa-brake-yaw-skid"])
+def test_a_sliding_law_is_tried_with_slip(folder: Path, name: str | None) -> None:
+    file = folder / "grip.py"
+    file.write_text(
+        "from typing import Literal\nfrom tyrefem.boundaries.sliding import UniformSliding\n\n\n"
+        'class Grip(UniformSliding):\n    """mu = 0.4."""\n\n    law: Literal["grip"]\n\n'
+        "    def friction(self, sliding_speed, rolling_speed):\n        return 0.4\n",
+        encoding="utf-8",
+    )
+    checked = check_file(file, name)
+    assert (checked.count, checked.failed) == (4, 0)
+
+
+@pytest.mark.parametrize(
+    ("kind", "change", "words"),
+    [
+        ("boundary-law", ('"30 W/m**2/K"}', '"30 W/m**2/K"}, 1'), "example: must be a table"),
+        ("sweep-answer", ("    key: ClassVar", "    example: ClassVar = None\n    key: ClassVar"), "must be a table"),
+        ("strain-law", ("float | None] = 2.0", "str] = 'two'"), "its contracts can be tried: ValueError"),
+    ],
+)
+def test_an_attribute_of_another_type_is_a_contract_that_fails(
+    write: Write, kind: str, change: tuple[str, str], words: str, capfd: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["check", str(write(kind, change))]) == 2
+    out = capfd.readouterr().out
+    assert "FAIL  its contracts can be tried: " in out
+    assert words in out
 
 
 def test_a_file_that_cannot_be_loaded_is_listed_once(write: Write, capfd: pytest.CaptureFixture[str]) -> None:

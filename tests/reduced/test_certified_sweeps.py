@@ -141,6 +141,27 @@ def test_the_estimated_error_is_that_of_the_modes_left_out(trained: Surrogate, p
         assert better.error < worse.error
 
 
+def test_an_estimate_is_that_of_the_variant_s_sensors(trained: Surrogate, plan: Plan) -> None:
+    """With few modes and a single hot node the sensor decides: 0.14 and 0.75 K at its two places."""
+    V, hot = trained.model.V, {"sidewall": trained.model.hot["sidewall"][:1]}
+    few = replace(trained.model, V=V[:, :5], further=V[:, 5:], hot=hot)
+    places = [{"s": "20 mm", "depth": "1 mm"}, {"s": "50 mm", "depth": "8 mm"}]
+    studies = [plan.study.replace({"sensors": {"moved": place}}) for place in places]
+    together = [outcome.error for outcome in reduced_answers(few, studies, None)]  # type: ignore[union-attr]
+    alone = [reduced_answers(few, [each], None)[0].error for each in studies]  # type: ignore[union-attr]
+    assert together == pytest.approx(alone, rel=1e-3)
+    assert alone[1] > 2 * alone[0]
+
+
+def test_readings_of_a_late_clock_are_those_of_the_whole_result(trained: Surrogate, plan: Plan) -> None:
+    late = plan.study.replace({"effects": [{"name": "clock-offset", "late": "15 s"}]})
+    ((_, variant),) = reduced_outcomes(trained.model, [late])
+    assert isinstance(variant, Variant)
+    whole = variant.result.readings
+    assert np.abs(variant.readings - whole).to_numpy().max() < 1e-6
+    assert np.abs(whole["contained-air"] - variant.gas_temperature).max() > 0.5
+
+
 def test_a_model_without_further_modes_estimates_nothing(trained: Surrogate, plan: Plan) -> None:
     (outcome,) = reduced_answers(replace(trained.model, further=None), [plan.study.replace(plan.variants[1])], None)
     assert isinstance(outcome, Answered)
@@ -157,6 +178,9 @@ def test_outside_its_box_it_is_not_asked(trained: Surrogate, tyre: Study) -> Non
     # What the box does not vary at all is as the study has it.
     other = trained.answers([inside.replace({"drive.ambient": "5 degC"})])[0].reason
     assert "drive.ambient" in other
+    # A number that the study does not have.
+    deflected = trained.answers([inside.replace({"drive.load": None, "drive.deflection": "20 mm"})])[0]
+    assert deflected.reason.startswith("drive.load: not set in the study")
 
 
 def test_another_mesh_is_refused(trained: Surrogate, tyre: Study) -> None:
@@ -234,6 +258,31 @@ def test_phases_ramps_and_a_lumped_rim() -> None:
     assert np.abs(variant.result.history.values - full.history.values).max() < 0.1
     assert variant.result.heat_budget.imbalance < 1e-10
     assert variant.rolling_resistance.phase == full.rolling_resistance.phase
+
+
+ROLL, REST = {"name": "roll", "duration": "40 s"}, {"name": "rest", "duration": "40 s", "speed": "0 mph"}
+
+
+@pytest.mark.parametrize(
+    ("key", "values"),
+    [
+        ("boundaries.contained_air", [{"law": "gas"}, {"law": "held", "temperature": "40 degC"}]),
+        ("drive.phases", [[ROLL], [ROLL, REST]]),
+        ("sensors", [{}, {"crown": {"s": "20 mm", "depth": "2 mm"}}]),
+    ],
+)
+def test_variants_with_and_without_a_reservoir_a_phase_or_a_sensor(key: str, values: list[object]) -> None:
+    """Each has another number of unknowns, times or readings than the study."""
+    base = study("nasa-22x5.5-8pr", {"mesh.size": "14 mm", "mesh.element": "P1", key: values[0]})
+    short = base if key == "drive.phases" else base.replace({"drive.duration": "60 s"})
+    plan = plan_of(short, {key: values, "drive.load": ("2200 lbf", "3200 lbf")}, sample="sobol", count=24)
+    trained = surrogate(plan, tolerance=0.05)
+    studies = [short.replace({key: value, "drive.load": "2900 lbf"}) for value in values]
+    for fresh, outcome in zip(studies, trained.answers(studies), strict=True):
+        assert isinstance(outcome, Answered)
+        full = answers(run(fresh))
+        assert outcome.answers.keys() == full.keys()
+        assert temperature_error(outcome.answers, full) < 0.05
 
 
 def test_a_full_section_is_its_half_twice(tyre: Study) -> None:

@@ -43,6 +43,10 @@ def test_only_what_a_press_reads_is_learnt(tyre: Study, plan: Plan) -> None:
     assert [plan.varied[n].key for n in mechanical_numbers(plan.study, plan.varied)] == ["drive.pressure"]
     speeds = plan_of(tyre, {"drive.speed": ("10 mph", "20 mph"), "section.crown_radius": ("3.4 in", "3.6 in")})
     assert [speeds.varied[n].key for n in mechanical_numbers(tyre, speeds.varied)] == ["section.crown_radius"]
+    # Lists of phases have load cases of their own: every variant is pressed.
+    phases = [[{"name": "roll", "duration": "60 s"}], [{"name": each, "duration": "60 s"} for each in ("roll", "on")]]
+    of_phases = plan_of(tyre, {"drive.pressure": ("78 psi", "92 psi"), "drive.phases": phases})
+    assert mechanical_numbers(tyre, of_phases.varied) == []
     arcs = tyre.replace({"mechanics.strain": "arcs"})
     assert mechanical_numbers(arcs, plan_of(arcs, BOX).varied) == []
 

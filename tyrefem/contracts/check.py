@@ -17,6 +17,8 @@ from tyrefem.materials.road_friction import FRICTION
 from tyrefem.materials.tan_delta_card import TAN_DELTA
 from tyrefem.mechanics.strain_laws import KIND as STRAIN_LAW
 from tyrefem.plugins import Failure, Kind, Plugin, registry, use
+from tyrefem.plugins.guard import failure_words
+from tyrefem.plugins.loading import LoadedModule, module_name
 from tyrefem.plugins.registry import nameless
 from tyrefem.sweep.question import KIND as SWEEP_ANSWER
 
@@ -88,14 +90,32 @@ def check_file(file: str | Path, study: str | None = None) -> CheckedFile:
         warnings.simplefilter("ignore", PluginWarning)  # they are listed instead
         use(place)
         loaded = registry()
-    failures = [_words(failure) for failure in loaded.failures if failure.origin.file == place]
-    failures += [words for module in loaded.modules if module.origin.file == place for words in nameless(module)]
-    plugins = [plugin for plugin in loaded.plugins if plugin.origin.file == place]
+    modules = [module for module in loaded.modules if _is_of(place, module)]
+    files = {place, *(module.origin.file for module in modules)}
+    failures = [_words(failure) for failure in loaded.failures if failure.origin.file in files]
+    failures += [words for module in modules for words in nameless(module)]
+    plugins = [plugin for plugin in loaded.plugins if plugin.origin.file in files]
     if not plugins and not failures:
         kinds = ", ".join(kind.name for kind in CONTRACTS)
         raise InputError(f"has no plugin: a class that extends the base of a kind ({kinds})", file=file)
-    tried = tuple((plugin, tuple(CONTRACTS[plugin.kind](plugin.cls, study))) for plugin in plugins)
+    tried = tuple((plugin, tuple(_contracts(plugin, study))) for plugin in plugins)
     return CheckedFile(tried, tuple(failures))
+
+
+def _contracts(plugin: Plugin, study: str | None) -> Iterator[Contract]:
+    """The contracts of a plugin; an attribute of the wrong type, on which they fail, is another that is not kept."""
+    words = "its contracts can be tried"
+    try:
+        yield from CONTRACTS[plugin.kind](plugin.cls, study)
+    except InputError as error:
+        yield Contract(words, str(error))
+    except Exception as error:
+        yield Contract(words, failure_words(error, str(plugin.origin.file)))
+
+
+def _is_of(place: Path, module: LoadedModule) -> bool:
+    """Whether a module is that of a file, or of an equal one of another folder, which is loaded once for both."""
+    return place.is_file() and module.name == module_name(place, place.read_bytes())
 
 
 def _words(failure: Failure) -> str:

@@ -16,9 +16,22 @@ from tyrefem.materials.road_friction import FrictionOnRoad
 from tyrefem.materials.tan_delta_law import TEMPERATURES, TanDeltaLaw
 
 
+def example_of(cls: type[Any]) -> dict[str, Any]:
+    """The ``example`` of a law or answer; empty without one.
+
+    Raises
+    ------
+    InputError : it is no table.
+    """
+    example = getattr(cls, "example", {})
+    if not isinstance(example, Mapping):
+        raise InputError(f"must be a table, as example: ClassVar[dict] = {{...}}, not {example!r:.60}", field="example")
+    return dict(example)
+
+
 def example_table(cls: type[Any], name: str) -> dict[str, Any]:
     """A table of a law as in a file: its ``example``, and the first example of every other required field."""
-    table = {"law": name, **getattr(cls, "example", {})}
+    table = {"law": name, **example_of(cls)}
     for key, field in cls.model_fields.items():
         if field.is_required() and key not in table and field.examples:
             table[key] = field.examples[0]
@@ -47,8 +60,21 @@ def boundary_law(cls: type[Law], study_name: str | None = None) -> Iterator[Cont
     yield pickles(law)
     changes: dict[str, Any] = {f"boundaries.{cls.side}": table}
     if cls.side == "sliding" and not getattr(cls, "rolls", False):
-        changes["drive.phases.rolling.slip"] = 0.05
+        changes |= _slip(study_name)
     yield finite_run_of(changes, study_name)
+
+
+def _slip(study_name: str | None) -> dict[str, float]:
+    """Slip for the first phase of the study that moves; none where a phase slides already."""
+    try:
+        study = quick_study(study_name)
+    except InputError:
+        return {}  # the run says what is wrong with it
+    phases = study.card.drive.phases
+    moving = next((phase.name for phase in phases if not phase.stands), None)
+    if moving is None or any(phase.slides for phase in phases):
+        return {}
+    return {f"drive.phases.{moving}.slip_ratio" if "phases" in study.data["drive"] else "drive.slip_ratio": 0.05}
 
 
 def tan_delta_law(cls: type[TanDeltaLaw], study_name: str | None = None) -> Iterator[Contract]:

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from tyrefem.contracts.contract import Contract, kept
+from tyrefem.contracts.law import example_of
 from tyrefem.contracts.study import quick_study
 from tyrefem.errors import InputError
 from tyrefem.output import jsonable
@@ -16,7 +17,7 @@ from tyrefem.sweep.question import SweepQuestion
 
 def contracts(cls: type[SweepQuestion], study_name: str | None = None) -> Iterator[Contract]:
     """The contracts of an answer: it runs on a tiny sweep; its table, sentences and JSON can be written."""
-    table = dict(getattr(cls, "example", {}))
+    table = example_of(cls)
     try:
         cls.table.check(table)
     except InputError as error:

@@ -82,7 +82,7 @@ def looks_like_cases(path: Path) -> bool:
     of_sheets = texts(path)
     if len(of_sheets) > 1:
         return False
-    lines = [line for _, line in _content(*of_sheets.values())[:LONGEST_PREAMBLE]]
+    lines = [line for _, line in _content(*of_sheets.values())[: LONGEST_PREAMBLE + 1]]
     cells = [cell.strip(' "') for cell in lines[0].split(_delimiter(lines[0]))] if lines else []
     return "name" in cells and not any(_is_of_histories(line) for line in lines)
 
@@ -94,9 +94,10 @@ def _is_of_histories(line: str) -> bool:
 
 
 def _content(text: str) -> list[tuple[int, str]]:
-    """The lines that are not blank or comments, with their numbers in the file."""
+    """The lines with a filled cell that are no comments, with their numbers in the file; comments may be in quotes."""
     lines = enumerate(re.split("\r\n|\r|\n", text), 1)
-    return [(number, line) for number, line in lines if line.strip() and not line.lstrip().startswith("#")]
+    filled = ((number, line) for number, line in lines if line.strip().strip(DELIMITERS + ' "'))
+    return [(number, line) for number, line in filled if not line.lstrip().lstrip('"').startswith("#")]
 
 
 def _delimiter(heading: str) -> str:

@@ -144,7 +144,8 @@ def has_words_only(cells: Sequence[str]) -> bool:
     """
     gaps = NO_READING | BROKEN
     return bool(cells) and all(
-        any(map(str.isalpha, cell)) and ":" not in cell and cell.lower() not in gaps for cell in set(cells)
+        any(map(str.isalpha, cell)) and ":" not in cell and cell.lower() not in gaps and not is_number(cell)
+        for cell in set(cells)
     )
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from tyrefem.errors import InputError
 from tyrefem.measured.heading import in_brackets, is_time
-from tyrefem.measured.lines import decode, split
+from tyrefem.measured.lines import decode, is_comment, split
 from tyrefem.measured.names import in_table_words
 from tyrefem.measured.sheet import Sheet
 from tyrefem.measured.table import TableLines
@@ -43,7 +43,8 @@ def frame_lines(frame: pd.DataFrame, rename: Mapping[str, str] | None = None) ->
     with tempfile.TemporaryDirectory(prefix="tyrefem-") as folder:
         # It is read like a file, so that a frame and a file follow the same rules.
         file = Path(folder) / "measured.csv"
-        _flat(frame, rename or {}).to_csv(file, index=False, lineterminator="\n", date_format=STAMP)
+        flat = _without_comments(_flat(frame, rename or {}))
+        flat.to_csv(file, index=False, lineterminator="\n", date_format=STAMP)
         try:
             lines = split(decode(file), file, rename)
         except InputError as error:
@@ -63,6 +64,12 @@ def _flat(frame: pd.DataFrame, rename: Mapping[str, str]) -> pd.DataFrame:
     if "time_s" not in flat.columns:
         return flat
     return flat.rename(columns=lambda name: "time [s]" if name == "time_s" else _in_degC(str(name)))
+
+
+def _without_comments(frame: pd.DataFrame) -> pd.DataFrame:
+    """The frame with its first column last if that has texts which would make comments of their rows, as run "#1"."""
+    first = [str(frame.columns[0]), *frame.iloc[:, 0].astype(str)] if len(frame.columns) else []
+    return frame.iloc[:, [*range(1, len(frame.columns)), 0]] if any(map(is_comment, first)) else frame
 
 
 def _is_needed(name: object, rename: Mapping[str, str]) -> bool:

@@ -106,6 +106,11 @@ def _beside(path: Path) -> str:
     return nearest(path.name, names) if names else ""
 
 
+def is_comment(line: str) -> bool:
+    """Whether a line is a comment, perhaps in quotes."""
+    return _COMMENT.match(line) is not None
+
+
 def split(text: str, path: Path, rename: Mapping[str, str] | None = None) -> Lines:
     """The cells of a table's text. Blank lines, and lines that begin with ``#`` or ``//``, are not rows.
 
@@ -126,7 +131,7 @@ def split(text: str, path: Path, rename: Mapping[str, str] | None = None) -> Lin
     lines = re.split("\r\n|\r|\n", text)
     comments, content = [], []
     for number, line in enumerate(lines, 1):
-        if _COMMENT.match(line):
+        if is_comment(line):
             comments.append(_COMMENT.sub("", line).strip(DELIMITERS + ' "'))
         elif line.strip(DELIMITERS + ' "'):
             content.append((number, line))
@@ -134,7 +139,7 @@ def split(text: str, path: Path, rename: Mapping[str, str] | None = None) -> Lin
         raise NoTableError("has only comments, no heading and no readings", file=path)
     toa5 = one_heading(content)
     if toa5 is not None:
-        comments, content = [toa5[0].replace('"', ""), *comments], toa5[1]
+        comments, content = [toa5[0].replace('"', "").strip(DELIMITERS + " "), *comments], toa5[1]
     try:
         position, delimiter = _heading(content, path, rename)
     except InputError as error:
@@ -143,6 +148,8 @@ def split(text: str, path: Path, rename: Mapping[str, str] | None = None) -> Lin
     heading = tuple(_without_trailing_empty(_cells(line, delimiter, number, path)))
     place = f", line {number}," if position else ""
     rows, numbers = _rows(content[position + 1 :], delimiter, heading, path, place)
+    if toa5 is not None and not rows:
+        raise InputError("has a heading but no readings", file=path)
     preamble = [text.strip(DELIMITERS + ' "') for _, text in content[:position]]
     notes: tuple[str, ...] = ()
     if rows:
@@ -160,7 +167,7 @@ def _heading(content: list[tuple[int, str]], path: Path, rename: Mapping[str, st
     """Index and delimiter of the line with a time column: the first of those of the lowest `_rank`."""
     best: tuple[int, int, str] | None = None
     surest = 0 if rename else 2
-    for position, (number, line) in enumerate(content[:LONGEST_PREAMBLE]):
+    for position, (number, line) in enumerate(content[: LONGEST_PREAMBLE + 1]):
         if best is not None and best[0] <= surest:
             break
         for delimiter in DELIMITERS:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from tyrefem.errors import InputError
 from tyrefem.measured.columns import SensorColumn, has_words_only
-from tyrefem.measured.heading import is_channel, parts, temperature_unit
+from tyrefem.measured.heading import is_channel, is_temperature, parts, temperature_unit
 from tyrefem.measured.lines import Lines
 from tyrefem.measured.names import in_table_words
 from tyrefem.measured.times import TimeColumn
@@ -19,8 +19,9 @@ def is_ignored(text: str, ignore: frozenset[str]) -> bool:
 
 
 def is_run(text: str) -> bool:
-    """Whether a heading is that of the run column."""
-    return parts(text)[0].lower() == "run"
+    """Whether a heading is that of the run column; ``run [degC]`` is a sensor, as ``time [degC]`` is."""
+    name, unit = parts(text)
+    return name.lower() == "run" and not is_temperature(unit or "")
 
 
 @dataclass(frozen=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import sys
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -62,8 +63,13 @@ def guarded_call(cycle_of: Any, place: str, origin: Origin) -> Callable[..., Any
     if not callable(cycle_of):
         raise plugin_error(origin, place, f"must be a function from load case to strain cycle, not {cycle_of!r:.60}")
     if not hasattr(cycle_of, "__code__"):
-        return guarded(lambda *cases: cycle_of(*cases), place, origin)
+        return guarded(lambda *cases: cycle_of(*cases), place, origin, _file_of(cycle_of))
     return guarded(cycle_of, place, origin)
+
+
+def _file_of(thing: Any) -> str:
+    """The Python file of an object's class; empty where it has none."""
+    return str(getattr(sys.modules.get(type(thing).__module__), "__file__", None) or "")
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,21 +88,30 @@ class UserCycle:
     @property
     def zones(self) -> tuple[Zone, ...]:
         """The zones."""
-        return tuple(self.cycle.zones)
+        return tuple(self._given_zones)
+
+    @property
+    def _given_zones(self) -> Any:
+        """The zones as the user's cycle gives them; errors name the plugin."""
+        place = f"class {self.name}, zones"
+        return guarded(lambda: self.cycle.zones, place, self.origin, _file_of(self.cycle))()
 
     def energy_density(self, zone: str, points: Array) -> Array:
         """U, J/m3, at points (2, n) of a zone."""
         place = f"class {self.name}, energy_density"
-        values = guarded(lambda: self.cycle.energy_density(zone, points), place, self.origin)()
+        file = _file_of(self.cycle)
+        values = guarded(lambda: self.cycle.energy_density(zone, points), place, self.origin, file)()
+        must = f"must give {points.shape[1]} numbers for {points.shape[1]} points, not "
+        if values is None:  # a method without return, which numpy takes for nan
+            raise plugin_error(self.origin, place, f"{must}None")
         try:
             return np.broadcast_to(np.asarray(values, dtype=float), points.shape[1:])
         except (TypeError, ValueError):
-            must = f"must give {points.shape[1]} numbers for {points.shape[1]} points, not {np.shape(values)}"
-            raise plugin_error(self.origin, place, must) from None
+            raise plugin_error(self.origin, place, f"{must}{np.shape(values)}") from None
 
     def trials(self, section: Section) -> Iterator[Trial]:
         """Zones of the section's regions, and energies at points of each."""
-        fault = _zones_fault(getattr(self.cycle, "zones", None), section)
+        fault = _zones_fault(self._given_zones, section)
         yield Trial("zones are parts of the section's regions", fault and f"the strain cycle's {fault}")
         if fault:
             return
@@ -123,7 +138,9 @@ def _zones_fault(zones: Any, section: Section) -> str | None:
     unknown = [zone.region for zone in zones if zone.region not in section.regions]
     if unknown:
         return f"zones name the region '{unknown[0]}', which section '{section.name}' does not have"
-    return None
+    names = [zone.name for zone in zones]
+    twice = next((name for name in names if names.count(name) > 1), None)
+    return None if twice is None else f"zones have the name '{twice}' twice: only the last would heat"
 
 
 def points_of(section: Section, zone: Zone) -> Array:

@@ -29,8 +29,10 @@ def guard(cls: type, origin: Origin) -> None:
             setattr(part, name, guarded(attribute, place, origin))
 
 
-def guarded(function: Callable[..., Any], place: str, origin: Origin) -> Callable[..., Any]:
+def guarded(function: Callable[..., Any], place: str, origin: Origin, file: str = "") -> Callable[..., Any]:
     """A function whose errors become an `InputError` with the plugin's file, the place, and the line.
+
+    ``file``: the Python file whose line is named; default: that of the function.
 
     >>> def film(speed): return 1 / speed
     >>> guarded(film, "class Gust, film", Origin(entry="x", package="winds"))(0)
@@ -46,7 +48,8 @@ def guarded(function: Callable[..., Any], place: str, origin: Origin) -> Callabl
         except (InputError, MemoryError):
             raise
         except (Exception, SystemExit) as error:
-            raise plugin_error(origin, place, failure_words(error, function.__code__.co_filename)) from error
+            words = failure_words(error, file or function.__code__.co_filename)
+            raise plugin_error(origin, place, words) from error
 
     setattr(call, _MARK, True)
     return call
@@ -54,8 +57,9 @@ def guarded(function: Callable[..., Any], place: str, origin: Origin) -> Callabl
 
 def failure_words(error: BaseException, file: str) -> str:
     """An exception in a line: its class and message, and the last line of ``file`` that it passed."""
-    if isinstance(error, SyntaxError):
-        return f"line {error.lineno}: {type(error).__name__}: {error.msg}"
+    if isinstance(error, SyntaxError) and error.lineno:
+        other = "" if error.filename == file else f" of {error.filename}"  # of a module that it imports
+        return f"line {error.lineno}{other}: {type(error).__name__}: {error.msg}"
     lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == file]
     text = " ".join(str(error).split())
     return f"{type(error).__name__}: {text}" + (f" (line {lines[-1]})" if lines else "")

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from tyrefem.errors import InputError, PluginWarning
 from tyrefem.plugins import environment
-from tyrefem.plugins.guard import guard, plugin_error
+from tyrefem.plugins.guard import failure_words, guard, plugin_error
 from tyrefem.plugins.kind import Kind, is_ours, kind_of
 from tyrefem.plugins.loading import LoadedModule, entry_points, load_entry_point, load_file, python_files
 from tyrefem.plugins.origin import Origin
@@ -190,9 +190,17 @@ def _judged(cls: type, origin: Origin, before: list[Plugin]) -> Plugin | Failure
     kind = kind_of(cls)
     if kind is None or is_ours(cls):
         return None
-    place, name = f"class {cls.__name__}", kind.name_of(cls)
-    if not name:
-        return None
+    name = kind.name_of(cls)
+    try:
+        return _plugin(kind, name, cls, origin, before) if name else None
+    except Exception as error:  # an attribute of another type than the check of its kind expects
+        words = f"{kind.name} '{name}' cannot be checked: {failure_words(error, str(origin.file or ''))}"
+        return Failure(origin, words, f"class {cls.__name__}", kind.name, name)
+
+
+def _plugin(kind: Kind, name: str, cls: type, origin: Origin, before: list[Plugin]) -> Plugin | Failure:
+    """A class with a name as a plugin, or as a failure with the reason."""
+    place = f"class {cls.__name__}"
 
     def failed(words: str) -> Failure:
         return Failure(origin, words, place, kind.name, name)

@@ -69,7 +69,11 @@ def trial(words: str, compute: Callable[[], Any], allowed: Range, shape: tuple[i
 def _fault(must: str, value: Any, allowed: Range, shape: tuple[int, ...]) -> str | None:
     try:
         numbers = np.asarray(value, dtype=float)
+        # A method without return gives None, which would count as nan; a text of digits would count as a number.
+        is_numeric = value is not None and np.asarray(value).dtype.kind not in "US"
     except (TypeError, ValueError):
+        is_numeric = False
+    if not is_numeric:
         return f"{must}, not {value!r:.60}"
     try:
         fits = numbers.shape == shape or np.broadcast_shapes(numbers.shape, shape) == shape

@@ -41,14 +41,13 @@ def estimated_errors(solution: BatchSolution) -> Array | None:
     if batch.model.further is None:
         return None
     drive, largest = batch.balances[0].alike.drive, np.zeros(len(batch.balances))
-    residual, places = _Residual(solution), None
+    residual = _Residual(solution)
+    places: list[Array] = []
     for number, (start, end) in enumerate(pairwise([*drive.starts, drive.end])):
         times = start + PARTS * (end - start) * (1 - 1e-9)
         steps, of_reservoirs = residual.steps(number, times, TAU * (end - start))
-        if places is None:
-            balances = residual.enriched if len(residual.films) > 1 else residual.enriched[:1]
-            places = np.stack([_rows(balance) for balance in balances])
-        at = np.abs(places @ steps).max(axis=(1, 2))
+        places = places or _places(residual)
+        at = np.array([np.abs(rows @ step).max() for rows, step in zip(places, steps, strict=True)])
         largest = np.maximum(largest, np.maximum(at, np.abs(of_reservoirs).max(axis=(1, 2), initial=0.0)))
     return SAFETY_FACTOR * largest
 
@@ -135,6 +134,16 @@ def _combined(coefficients: Array, matrices: Array) -> Array:
     if len(matrices) == 1:
         return np.asarray(np.tensordot(coefficients, matrices[0], axes=1))
     return np.asarray(np.einsum("bc,bcij->bij", coefficients, matrices, optimize=True))
+
+
+def _places(residual: _Residual) -> list[Array]:
+    """Rows of the modes of every variant, (k, m + f): see `_rows`."""
+    balances = residual.enriched
+    tyres = dict.fromkeys(balance.alike for balance in balances)
+    sensors = {tuple(true_places(tyre.study).values()) for tyre in tyres}
+    if len(residual.films) == 1 and len(sensors) == 1:
+        return [_rows(balances[0])] * len(balances)
+    return [_rows(balance) for balance in balances]
 
 
 def _rows(balance: ReducedBalance) -> Array:

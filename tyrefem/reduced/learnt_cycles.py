@@ -227,7 +227,8 @@ def _read(study: StudyData, varied: Sequence[Varied], n: int) -> bool:
     """Does a press read this number?"""
     keys = varied[n].keys
     if all(key.startswith("drive.") for key in keys):
-        return any(key.split(".")[-1] in PRESSED_BY for key in keys)
+        tables = any(isinstance(value, Mapping | list) for value in varied[n].values)
+        return tables or any(key.split(".")[-1] in PRESSED_BY for key in keys)
     ends = []
     for end in (0.0, 1.0):
         place = np.full(len(varied), 0.5)

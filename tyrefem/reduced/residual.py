@@ -96,12 +96,12 @@ def correction(solution: BatchSolution, place: int, share: float, early: float =
 
 
 def nearby(model: ReducedModel, number: int, share: float) -> StageMatrix:
-    """The factored matrix of the model's base study in a phase; kept with the model."""
-
+    """The factored matrix of the model's base study in a phase, at most its last; kept with the model."""
     model = model.on_reference
+    base = model.base
+    number = min(number, len(base.drive.starts) - 1)
 
     def factored() -> StageMatrix:
-        base = model.base
         ends = [*base.drive.starts, base.drive.end]
         span = ends[number + 1] - ends[number]
         balance = reduced_balance(model, base)
@@ -118,10 +118,12 @@ def solved(full: HeatBalance, near: StageMatrix, tau: float, right: Array, lumpe
     """Rates (n, k) of (M + tau S) rate = right, coupled with the reservoirs (lumped), by conjugate gradients.
 
     The factored matrix of a nearby study is the preconditioner: three or four solves replace a factorisation. The
-    error that remains, `REMAINING_ERROR`, is left to the next round. Without convergence the variant's matrix is
-    factored.
+    error that remains, `REMAINING_ERROR`, is left to the next round. Without convergence, or with another number of
+    reservoirs than the nearby study, the variant's matrix is factored.
     """
     n = len(right)
+    if near.m != len(lumped):
+        return _solved_by(StageMatrix(full, tau / GAMMA), np.concatenate([right, lumped]), n)[:n]
 
     def times(x: Array) -> Array:
         u, g = x[:n], x[n:]

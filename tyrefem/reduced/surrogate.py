@@ -133,11 +133,14 @@ class Surrogate(Brief):
 def why_outside(study: StudyData, base: StudyData, varied: Sequence[Varied]) -> str:
     """Why a study is outside the box around a base study; empty: the study is inside."""
     for number in varied:
-        value = value_at(study.data, number.key, study.folder)
+        try:
+            value, *others = (value_at(study.data, key, study.folder) for key in number.keys)
+        except InputError as error:
+            return str(error)
         if not number.contains(value):
             return f"'{number.key}' = {value!r} is outside the box of the reduced model"
         beside = number.keys[1:]
-        if not number.together(value, {key: value_at(study.data, key, study.folder) for key in beside}):
+        if not number.together(value, dict(zip(beside, others, strict=True))):
             return f"'{beside[0]}' does not change with '{number.key}', as the reduced model assumes"
     same = changes_at(varied, [0.5] * len(varied))
     study_data, base_data = (all_changed(each.data, same) for each in (study, base))

@@ -16,6 +16,7 @@ from tyrefem.reduced.balance import ReducedBalance
 from tyrefem.reduced.model import ReducedModel
 from tyrefem.reduced.readout import Readout
 from tyrefem.simulation.heat_budget import HeatBudget
+from tyrefem.simulation.readings import logged_columns
 from tyrefem.simulation.result import ResultData, warmed
 from tyrefem.simulation.rolling_resistance import RollingResistance, rolling_resistance
 from tyrefem.simulation.rolling_tyre import RollingTyre
@@ -140,7 +141,7 @@ class Variant:
 
         rim = self.rim_temperature
         lumped = {GAS: self.gas_temperature} | ({} if rim is None else {RIM: rim})
-        return pd.DataFrame({"time_s": self.times, **self.recorded, **lumped})
+        return pd.DataFrame(logged_columns(self._alike.study, self.times, self.recorded, lumped))
 
     @property
     def wall_gradient(self) -> tuple[Array, Array]:
