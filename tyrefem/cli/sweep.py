@@ -219,15 +219,16 @@ def sweep(
     answer_with(folder / "summary.json")
     say(*summary["words"])
     say(f"results in {folder}" + (f"; read {folder / 'sweep.html'}" if pictures else ""))
-    for variant, reason in list(design.failed.items())[:FAILURES_SHOWN]:
-        fail(f"variant {variant}: {reason}")
-    if len(design.failed) > FAILURES_SHOWN:
-        fail(f"... and {len(design.failed) - FAILURES_SHOWN} more; all are in {folder / 'sweep.csv'}")
+    failures = design.failures
+    for run, reason in list(failures.items())[:FAILURES_SHOWN]:
+        fail(f"{run}: {reason}")
+    if len(failures) > FAILURES_SHOWN:
+        fail(f"... and {len(failures) - FAILURES_SHOWN} more; all are in the tables of {folder}")
     if design.interrupted == "interrupted":
         raise Interrupted(kept)
     if design.interrupted:
         raise typer.Exit(fail(f"{design.interrupted}; {kept}", 1))
-    if design.failed:
+    if failures:
         raise typer.Exit(1)
 
 

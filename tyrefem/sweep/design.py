@@ -130,6 +130,16 @@ class DesignData(Brief):
         return {} if self.swept is None else self.swept.failed
 
     @property
+    def failures(self) -> dict[str, str]:
+        """Every run that failed, of the sample and of all further answers, in words -> reason."""
+        reasons = {f"variant {name}": reason for name, reason in self.failed.items()}
+        for part in self.parts:
+            of_part = getattr(part, "failed", None)
+            if isinstance(of_part, Mapping):
+                reasons |= {f"{part.name}: {name}": str(reason) for name, reason in of_part.items()}
+        return reasons
+
+    @property
     def words(self) -> list[str]:
         """All answers in sentences."""
         return [line for part in self.parts for line in part.words]
