@@ -43,6 +43,7 @@ def test_a_drive_beyond_it_gets_a_warning(here: Path, capfd: pytest.CaptureFixtu
     ("arguments", "words"),
     [
         (["--critical-speed", "--load", "3 kN"], "--load: no road acts on critical speeds"),
+        (["--critical-speed", "--balanced"], "--balanced: no road acts on critical speeds"),
         (["--critical-speed", "--pressure", "2 bar, 0 bar"], "--pressure: '0 bar' is out of range"),
         (["--critical-speed", "--temperature", "60 degC"], "--temperature: no card gives 'softening'"),
         (["--temperature", "60 degC"], "--temperature: is for --critical-speed"),

@@ -67,6 +67,21 @@ def test_show_of_an_unknown_effect(refused: Callable[..., str]) -> None:
     assert "no effect named 'wet_road'; did you mean 'wet-road'?" in refused("show", "effect", "wet_road")
 
 
+def test_an_effect_takes_no_changes(refused: Callable[..., str]) -> None:
+    assert "--set: changes a card" in refused("show", "effect", "wet-road", "--set", "drive.speed=25 mph")
+
+
+@pytest.mark.parametrize("value", [5000 * "9", 5000 * "["], ids=["digits", "brackets"])
+def test_a_change_or_card_that_no_reader_takes_is_one_line(value: str, here: Path, refused: Callable[..., str]) -> None:
+    assert "drive.speed: " in refused("show", "study", NASA, "--set", f"drive.speed={value}")
+    (here / "card.toml").write_text(f"title = {value}", encoding="utf-8")
+    assert "card.toml: not valid TOML: a number is too long, or" in refused("check", "card.toml")
+
+
+def test_a_change_is_one_value(refused: Callable[..., str]) -> None:
+    assert "drive.duration: " in refused("show", "study", NASA, "--set", "drive.duration='5 s'\nspeed='1 m/s'")
+
+
 def test_list_of_an_unknown_kind(refused: Callable[..., str]) -> None:
     assert "did you mean 'studies'?" in refused("list", "study")
 

@@ -181,6 +181,7 @@ SPEEDS = ["--vary", "drive.speed=10 mph:20 mph"]
         ([*SPEEDS, "--reduced", "perhaps"], "allowed: auto, never, always"),
         ([*SPEEDS, "--tolerance", "0 K"], "tolerance: must be positive, not 0 K"),
         ([*SPEEDS, "--tolerance", "1 mm"], "--tolerance: 'mm' is not a unit of this quantity"),
+        ([*SPEEDS, "--scheduler", "foo", "--workers", "2"], "--workers: a cluster has its workers"),
         ([*SPEEDS, "--scheduler", "foo"], "--scheduler: no Dask scheduler at 'foo': missing port number"),
     ],
 )

@@ -56,7 +56,8 @@ def new_size(kind: str, size: str, numbers: Mapping[str, Any], out: Path | None,
         raise InputError("exists and may have been edited; replace it with --force", file=target, field="--out")
     place_of_output(target.parent)
     options = " ".join(f"--set {key}={shlex.quote(str(value))}" for key, value in numbers.items())
-    command = f"tyrefem new {kind} {shlex.quote(size)} {options}".rstrip()
+    # In one line, as it stands in a comment of the file.
+    command = " ".join(f"tyrefem new {kind} {shlex.quote(size)} {options}".split())
     if kind == "section":
         text = section_text(drawn, command)
     else:

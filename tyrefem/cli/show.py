@@ -64,6 +64,8 @@ def show(
     if case is not None and kind not in OF_A_CASE:
         raise InputError(f"is for {', '.join(OF_A_CASE)}, not for a {kind}", field="--case")
     values = settings(changes)
+    if values and kind == "effect":
+        raise InputError("changes a card; an effect has its values in a study", field="--set")
     if out is not None and kind not in _SHOWN:
         raise InputError(f"a {kind} is printed, not drawn: remove this option", field="--out")
     shown: dict[str, Any] = {"kind": kind, "name": name}

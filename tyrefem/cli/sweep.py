@@ -187,6 +187,8 @@ def sweep(
     from tyrefem.reports.sweep_variants import chosen_variants, refuse_unknown, write_variants
     from tyrefem.variants.execution import Execution
 
+    if scheduler is not None and workers is not None:
+        raise InputError("a cluster has its workers: leave it out with --scheduler", field="--workers")
     given = questions_of_flags(
         vary=vary, link=link, uncertain=uncertain, sample=sample, count=count, seed=seed, cases=cases, limit=limit,
         time_to=time_to, answer=answer, pareto=pareto, indices=indices, tornado=tornado, tolerance_of=tolerance_of,
