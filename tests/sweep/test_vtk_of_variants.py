@@ -34,6 +34,15 @@ def test_a_chosen_variant_is_its_full_run(design: Design, tmp_path: Path) -> Non
     assert result.study.data["drive"]["speed"] == "20 mph"
 
 
+def test_names_that_differ_in_a_sign_have_folders_of_their_own(tmp_path: Path) -> None:
+    (tmp_path / "cases.csv").write_text("name,drive.speed [mph]\nv+5,25\nv-5,15\n")
+    cases = str(tmp_path / "cases.csv")
+    design = tf.study("nasa-22x5.5-8pr", QUICK).sweep(cases=cases, sample="list", reduced="never")
+    files = design.to_vtk(tmp_path, ["v+5", "v-5"])
+    assert files["v+5"] != files["v-5"]
+    assert all(file.is_file() for file in files.values())
+
+
 def test_by_default_those_on_the_front(design: Design, tmp_path: Path) -> None:
     front = set(design.pareto["variant"])
     assert set(design.to_vtk(tmp_path)) == front

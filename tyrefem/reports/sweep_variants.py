@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tyrefem.errors import InputError, nearest
-from tyrefem.reports.vtk import file_name, write_series
+from tyrefem.reports.vtk import write_series
 
 if TYPE_CHECKING:
     from tyrefem.sweep.design import DesignData
@@ -57,10 +57,14 @@ def write_variants(
     """
     from tyrefem.simulation.run import run
 
+    if variants is not None and (isinstance(variants, str) or not isinstance(variants, Iterable)):
+        raise InputError(f"must be a list of variants, like ['1', '2'], not {variants!r:.60}", field="variants")
     chosen = chosen_variants(design, [FRONT] if variants is None else map(str, variants))
+    if not chosen and variants is not None:
+        raise InputError("names no variant", field="variants")
     if not chosen:
         raise InputError("no variant is on the Pareto front: none is feasible", field="variant")
     return {
-        name: write_series(run(design.variant_study(name)), folder / FOLDER / file_name(name), revolved=revolved)
+        name: write_series(run(design.variant_study(name)), folder / FOLDER / name, revolved=revolved)
         for name in chosen
     }

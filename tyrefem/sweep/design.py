@@ -11,6 +11,7 @@ from tyrefem.brief import Brief
 from tyrefem.errors import InputError, InputWarning, nearest
 from tyrefem.inputs.study import StudyData
 from tyrefem.mechanics.cautions import warnings_of
+from tyrefem.output import as_path
 from tyrefem.requirements import Requirements
 from tyrefem.sweep.envelope import Envelope
 from tyrefem.sweep.optimum import Optimum, optimum
@@ -245,8 +246,8 @@ def run_design_study(study: StudyData, vary: Mapping[str, Any] | None = None, **
         if name not in allowed:
             raise InputError(f"unknown option '{name}'{nearest(name, allowed)}", field="sweep")
     run = {name: options.pop(name) for name in known if name in options}
-    if isinstance(run.get("folder"), str):
-        run["folder"] = Path(run["folder"])
+    if run.get("folder") is not None:
+        run["folder"] = as_path(run["folder"], "folder")
     execution = Execution(**run)
     if options.get("case") is not None:
         study = study.case(options["case"])
