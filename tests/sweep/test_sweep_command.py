@@ -135,6 +135,7 @@ def test_a_search_with_a_failed_variant_ends_with_1_and_tells_it(
     search = ["--minimise", "deflection_m", "--out", str(tmp_path), "--no-pictures"]
     assert main(["sweep", TYRE, *box, *QUICK, *search]) == 1
     assert "tyrefem: optimum: variant 3: drive.load: " in capsys.readouterr().err
+    assert list(json.loads((tmp_path / "summary.json").read_text())["failures"]) == ["optimum: variant 3"]
     assert load(tmp_path).complete
 
 

@@ -223,7 +223,7 @@ def sweep(
     say(f"results in {folder}" + (f"; read {folder / 'sweep.html'}" if pictures else ""))
     failures = design.failures
     for run, reason in list(failures.items())[:FAILURES_SHOWN]:
-        fail(f"{run}: {reason}")
+        fail(f"{f'variant {run}' if run in design.failed else run}: {reason}")
     if len(failures) > FAILURES_SHOWN:
         fail(f"... and {len(failures) - FAILURES_SHOWN} more; all are in the tables of {folder}")
     if design.interrupted == "interrupted":

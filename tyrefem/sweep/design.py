@@ -132,8 +132,8 @@ class DesignData(Brief):
 
     @property
     def failures(self) -> dict[str, str]:
-        """Every run that failed, of the sample and of all further answers, in words -> reason."""
-        reasons = {f"variant {name}": reason for name, reason in self.failed.items()}
+        """Every run that failed -> reason: a variant of the sample by its name, others behind their answer's name."""
+        reasons = dict(self.failed)
         for part in self.parts:
             of_part = getattr(part, "failed", None)
             if isinstance(of_part, Mapping):
