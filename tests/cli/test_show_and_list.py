@@ -95,6 +95,21 @@ def test_show_draws(kind: str, here: Path, capfd: pytest.CaptureFixture[str]) ->
     assert err == ""
 
 
+def test_capital_letters_of_an_ending_are_no_matter(here: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    assert main(["new", "study", "mine", "--out", "MINE.TOML"]) == 0
+    coarse = ("--set", "mesh.size=12 mm")
+    assert main(["check", "MINE.TOML"]) == 0
+    assert main(["show", "mesh", "MINE.TOML", *coarse]) == 0
+    assert (here / "mesh-MINE.png").is_file()
+    for mesh in ("M.MSH", "M.VTK", "M.VTU"):
+        assert main(["show", "mesh", "MINE.TOML", *coarse, "--out", mesh]) == 0
+        assert main(["show", "mesh", "MINE.TOML", "--set", f"mesh.file={mesh}", "--out", "again.png"]) == 0
+    speeds = ["--vary", "drive.speed=10 mph,20 mph", "--set", "drive.duration=10 s", "--workers", "1", "--no-pictures"]
+    assert main(["sweep", "MINE.TOML", *coarse, *speeds, "--reduced", "never"]) == 0
+    assert main(["new", "study", "205/60R15", "--out", "SIZE.TOML"]) == 0
+    assert (here / "SIZE.TOML").is_file()
+
+
 def test_show_section_takes_changes(capsys: pytest.CaptureFixture[str]) -> None:
     volumes = []
     for value in ("3.0 in", "3.4 in"):

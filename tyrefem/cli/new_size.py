@@ -48,7 +48,7 @@ def new_size(kind: str, size: str, numbers: Mapping[str, Any], out: Path | None,
     name = re.sub(r"[^\w.]+", "-", drawn.size.text.lower())
     folder = Path(library.FOLDERS[kind])
     target = out or (folder / name / "study.toml" if kind == "study" else folder / f"{name}.toml")
-    if kind == "study" and target.suffix != ".toml":
+    if kind == "study" and target.suffix.lower() != ".toml":
         target = target / "study.toml"
     if out is None and os.path.lexists(target):
         raise InputError("the file exists already; nothing was written; to replace it: --out FILE --force", file=target)

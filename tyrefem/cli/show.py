@@ -81,7 +81,7 @@ def show(
                 facts = _write_mesh(name, values, case, out)
             answer_with({**shown, "facts": facts, "picture": out})
         return
-    stem = Path(name).stem if name.endswith(".toml") else Path(name).resolve().name
+    stem = Path(name).stem if name.lower().endswith(".toml") else Path(name).resolve().name
     if looks_like_size(name):
         stem = name.replace("/", "-").replace(" ", "-")
     path = out or Path(f"{kind}-{stem}.png")
