@@ -56,7 +56,8 @@ def say_table(table: Any) -> None:
     if not (shell().quiet or shell().as_json):
         from rich.console import Console
 
-        console = Console(highlight=False)
+        # A title or a name may have brackets or colons, which are no marks of rich.
+        console = Console(highlight=False, markup=False, emoji=False)
         with console.capture() as printed:
             console.print(table)
         _print(printed.get())
