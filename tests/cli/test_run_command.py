@@ -159,6 +159,20 @@ def test_bad_input_is_refused_in_one_line(refused: Callable[..., str], arguments
     assert words in refused("run", *arguments)
 
 
+def test_a_file_whose_name_is_no_text_is_one_error(here: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    assert main(["new", "study", "mine", "--out", "mine.toml"]) == 0
+    name = os.fsdecode(b"caf\xe9.toml")
+    try:
+        Path("mine.toml").rename(name)
+    except OSError:
+        pytest.skip("a file system whose names are text")
+    capfd.readouterr()
+    assert main(["run", name, *SHORT, "--no-vtk"]) == 2
+    out, err = capfd.readouterr()
+    assert out == ""
+    assert err == "tyrefem: the name of a file or folder is not UTF-8 text, so that no result can hold it: rename it\n"
+
+
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="a device of Linux")
 def test_lines_that_nobody_takes_leave_complete_results(
     here: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch

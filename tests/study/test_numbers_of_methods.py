@@ -154,6 +154,8 @@ def test_a_result_from_a_file_and_of_a_user_that_there_is_not(tmp_path: Path) ->
     with pytest.raises(InputError, match="~nobody-here/out: no such folder of results"):
         tf.load("~nobody-here/out")
     (tmp_path / "verdict.json").write_text("{}")
+    with pytest.raises(InputError, match=r"verdict\.json: is damaged, or no verdict of 'tyrefem diagnose'"):
+        tf.load(tmp_path)
     with pytest.raises(InputError, match=r"verdict\.json: is a file; give its folder of results"):
         tf.load(tmp_path / "verdict.json")
 

@@ -69,7 +69,8 @@ def load(folder: str | Path) -> Result | Comparison | DiagnosisRecord | Record:
     if (place / "verdict.json").is_file():
         from tyrefem.api.diagnosis_record import DiagnosisRecord
 
-        read_json(place / "verdict.json")
+        if not {"verdict", "study", "sets"} <= set(read_json(place / "verdict.json")):
+            raise InputError("is damaged, or no verdict of 'tyrefem diagnose'", file=place / "verdict.json")
         whole = not (place / SUMMARY).is_file() or bool(read_json(place / SUMMARY).get(COMPLETE, True))
         return DiagnosisRecord(place, "diagnose", whole)
     if not (place / SUMMARY).is_file():
