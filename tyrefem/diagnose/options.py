@@ -25,11 +25,11 @@ from tyrefem.output import as_path
 
 #: Name on the command line -> strategy.
 STRATEGIES: Mapping[str, Strategy] = {"forward": ForwardSelection(), "exhaustive": Exhaustive()}
-#: Replaceable part -> the methods that it must have.
-_METHODS: Mapping[str, tuple[str, ...]] = {
-    "candidates": ("__call__",),
-    "criterion": ("of_fit", "of_linear"),
-    "strategy": ("check", "search"),
+#: Replaceable part -> what it is, and the methods that it must have.
+_PARTS: Mapping[str, tuple[str, tuple[str, ...]]] = {
+    "candidates": ("a function of a study", ("__call__",)),
+    "criterion": ("a Criterion, with of_fit and of_linear", ("of_fit", "of_linear")),
+    "strategy": ("a Strategy, with check and search", ("check", "search")),
 }
 
 
@@ -130,8 +130,9 @@ def grouped(options: Mapping[str, Any]) -> tuple[ColumnNames, Method, Simulation
     settings = replace(settings, **{name: given.pop(name) for name in ("largest", "looks", "reduced") if name in given})
     parts = {name: given.pop(name) for name in ("candidates", "criterion", "strategy") if name in given}
     for name, part in parts.items():
-        if not all(callable(getattr(part, method, None)) for method in _METHODS[name]):
-            raise InputError(f"cannot be {part!r:.60}: it has no {' and '.join(_METHODS[name])}", field=name)
+        wanted, methods = _PARTS[name]
+        if not all(callable(getattr(part, method, None)) for method in methods):
+            raise InputError(f"must be {wanted}, not {part!r:.60}", field=name)
     calibration = given.pop("calibration", None)
     table = None if calibration is None else as_path(calibration, "calibration")
     method = Method(**parts, settings=settings, calibration=table)
