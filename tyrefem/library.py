@@ -64,7 +64,7 @@ def find(kind: str, name: str, near: Path | None = None) -> Path:
     InputError : no such path or name; the message has the nearest name.
     """
     path = _path(name)
-    looks_like_path = path.suffix == ".toml" or os.sep in name or "/" in name or name in (".", "..")
+    looks_like_path = path.suffix.lower() == ".toml" or os.sep in name or "/" in name or name in (".", "..")
     if looks_like_path:
         options = [path] if path.is_absolute() or near is None else [near / path, path]
         for option in options:

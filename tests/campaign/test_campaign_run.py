@@ -154,6 +154,8 @@ def test_command_line(folder: Path, monkeypatch: pytest.MonkeyPatch, capfd: pyte
     assert main(["run", ".", "--no-vtk", "--out", "out"]) == 1
     out, err = capfd.readouterr()
     assert "3 cases, 1 failed" in out
+    # Every case has been tried: nothing is left to do.
+    assert json.loads((folder / "out/summary.json").read_text(encoding="utf-8"))["complete"] is True
     assert err.startswith("tyrefem: case crushed: ")
     assert err.count("\n") == 1
     page = (folder / "out/report.html").read_text(encoding="utf-8")

@@ -53,6 +53,7 @@ def test_a_tyre_that_tears_first_may_have_waves() -> None:
     ("arguments", "words"),
     [
         (["--critical-speed", "--load", "3 kN"], "--load: no road acts on critical speeds"),
+        (["--critical-speed", "--balanced"], "--balanced: no road acts on critical speeds"),
         (["--critical-speed", "--pressure", "2 bar, 0 bar"], "--pressure: '0 bar' is out of range"),
         (["--critical-speed", "--temperature", "60 degC"], "--temperature: no card gives 'softening'"),
         (["--temperature", "60 degC"], "--temperature: is for --critical-speed"),

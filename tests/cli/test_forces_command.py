@@ -97,6 +97,7 @@ def test_camber_leans_the_forces(here: Path) -> None:
         (["--friction", "0"], "--friction: must be at least 0.001, not 0: less holds no rolling tyre"),
         (["--speed", "1e6 m/s"], "--speed: must be at most 400 m/s"),
         (["--motion", "huge"], "--motion: no motion 'huge'"),
+        (["--slips", "none", "--slip-angles", "none"], "--slip-angles: give at least one slip angle or one slip"),
     ],
 )
 def test_bad_input_is_one_line(refused: Callable[..., str], arguments: list[str], words: str) -> None:

@@ -102,3 +102,13 @@ def test_a_bar_on_a_terminal(capfd: pytest.CaptureFixture[str], monkeypatch: pyt
     drawn = re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", capfd.readouterr().err)
     assert "simulations" in drawn
     assert "75%" in drawn
+
+
+def test_a_bar_has_the_name_of_its_stage_as_it_is(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    monkeypatch.setattr("sys.stderr.isatty", lambda: True)
+    with stages() as tick:
+        tick("tyre [v2] [/b]: simulations", 1, 2)
+    assert "tyre [v2] [/b]: simulations" in capsys.readouterr().err

@@ -91,6 +91,8 @@ def test_friction_on_the_footprint_in_large_motion(here: Path, capfd: pytest.Cap
         (["--slip-angle", "2"], "--slip-angle: '2' has no unit"),
         (["--slip-angle", "60 deg"], "--slip-angle: a slip angle of 60 deg is impossible"),
         (["--slip-angle", "1 deg:2 deg"], "--slip-angle: '1 deg:2 deg' is not from:to:number"),
+        (["--slip-angle", "1 deg:2 deg:²"], "--slip-angle: '1 deg:2 deg:²' is not from:to:number"),
+        (["--slip-angle", f"1 deg:2 deg:{5000 * '9'}"], "is not from:to:number"),
         (["--slip", "-100 %"], "--slip: a slip of -1 is impossible"),
         (["--slip", "1 %", "--torque", "10 N m"], "give at most one of slip, torque and axle force"),
         (["--friction", "-0.5"], "--friction: must be at least 0.001, not -0.5"),

@@ -10,6 +10,7 @@ import re
 import signal
 import subprocess
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -156,3 +157,37 @@ def test_a_folder_that_cannot_be_written(refused: Callable[..., str]) -> None:
 )
 def test_bad_input_is_refused_in_one_line(refused: Callable[..., str], arguments: list[str], words: str) -> None:
     assert words in refused("run", *arguments)
+
+
+def test_a_file_whose_name_is_no_text_is_one_error(here: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    assert main(["new", "study", "mine", "--out", "mine.toml"]) == 0
+    name = os.fsdecode(b"caf\xe9.toml")
+    try:
+        Path("mine.toml").rename(name)
+    except OSError:
+        pytest.skip("a file system whose names are text")
+    capfd.readouterr()
+    assert main(["run", name, *SHORT, "--no-vtk"]) == 2
+    out, err = capfd.readouterr()
+    assert out == ""
+    assert err == "tyrefem: the name of a file or folder is not UTF-8 text, so that no result can hold it: rename it\n"
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="a device of Linux")
+def test_lines_that_nobody_takes_leave_complete_results(
+    here: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    summary, (reader, writer) = here / "results" / NASA / "summary.json", os.pipe()
+    os.close(reader)
+    with os.fdopen(writer, "w", encoding="utf-8") as closed, monkeypatch.context() as piped:
+        # As `tyrefem run ... | head` ends: the reader has gone.
+        piped.setattr("sys.stdout", closed)
+        assert main(["run", NASA, *SHORT, *BARE]) == 0
+    assert json.loads(summary.read_text(encoding="utf-8"))["complete"] is True
+    full = open("/dev/full", "w", encoding="utf-8")  # noqa: SIM115, its end would be an error
+    with suppress(OSError), full, monkeypatch.context() as piped:
+        # A full disk where stdout goes is an error, but not of the results.
+        piped.setattr("sys.stdout", full)
+        assert main(["run", NASA, *SHORT, *BARE]) == 2
+    assert json.loads(summary.read_text(encoding="utf-8"))["complete"] is True
+    assert capfd.readouterr().err == "tyrefem: No space left on device\n"

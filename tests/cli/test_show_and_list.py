@@ -67,6 +67,21 @@ def test_show_of_an_unknown_effect(refused: Callable[..., str]) -> None:
     assert "no effect named 'wet_road'; did you mean 'wet-road'?" in refused("show", "effect", "wet_road")
 
 
+def test_an_effect_takes_no_changes(refused: Callable[..., str]) -> None:
+    assert "--set: changes a card" in refused("show", "effect", "wet-road", "--set", "drive.speed=25 mph")
+
+
+@pytest.mark.parametrize("value", [5000 * "9", 5000 * "["], ids=["digits", "brackets"])
+def test_a_change_or_card_that_no_reader_takes_is_one_line(value: str, here: Path, refused: Callable[..., str]) -> None:
+    assert "drive.speed: " in refused("show", "study", NASA, "--set", f"drive.speed={value}")
+    (here / "card.toml").write_text(f"title = {value}", encoding="utf-8")
+    assert "card.toml: not valid TOML: a number is too long, or" in refused("check", "card.toml")
+
+
+def test_a_change_is_one_value(refused: Callable[..., str]) -> None:
+    assert "drive.duration: " in refused("show", "study", NASA, "--set", "drive.duration='5 s'\nspeed='1 m/s'")
+
+
 def test_list_of_an_unknown_kind(refused: Callable[..., str]) -> None:
     assert "did you mean 'studies'?" in refused("list", "study")
 
@@ -78,6 +93,21 @@ def test_show_draws(kind: str, here: Path, capfd: pytest.CaptureFixture[str]) ->
     out, err = capfd.readouterr()
     assert "drawn in seen.png" in out
     assert err == ""
+
+
+def test_capital_letters_of_an_ending_are_no_matter(here: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    assert main(["new", "study", "mine", "--out", "MINE.TOML"]) == 0
+    coarse = ("--set", "mesh.size=12 mm")
+    assert main(["check", "MINE.TOML"]) == 0
+    assert main(["show", "mesh", "MINE.TOML", *coarse]) == 0
+    assert (here / "mesh-MINE.png").is_file()
+    for mesh in ("M.MSH", "M.VTK", "M.VTU"):
+        assert main(["show", "mesh", "MINE.TOML", *coarse, "--out", mesh]) == 0
+        assert main(["show", "mesh", "MINE.TOML", "--set", f"mesh.file={mesh}", "--out", "again.png"]) == 0
+    speeds = ["--vary", "drive.speed=10 mph,20 mph", "--set", "drive.duration=10 s", "--workers", "1", "--no-pictures"]
+    assert main(["sweep", "MINE.TOML", *coarse, *speeds, "--reduced", "never"]) == 0
+    assert main(["new", "study", "205/60R15", "--out", "SIZE.TOML"]) == 0
+    assert (here / "SIZE.TOML").is_file()
 
 
 def test_show_section_takes_changes(capsys: pytest.CaptureFixture[str]) -> None:

@@ -104,3 +104,9 @@ def test_a_measured_table_of_the_study_is_never_replaced(here: Path, capfd: pyte
     assert main(["strain", "mine.toml", "--out", "out", "--force", *BRIEF]) == 2
     assert "strain.csv: is an input of this command" in capfd.readouterr().err
     assert table.read_text(encoding="utf-8").startswith("time")
+
+
+def test_a_title_with_brackets_is_printed_as_it_is(here: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    quick = ["--set", "mesh.size=14 mm", "--set", "drive.duration=10 s", "--law", "barrel"]
+    assert main(["strain", STUDY, *quick, "--set", "title=Tyre [v2] [/b] :car:"]) == 0
+    assert capfd.readouterr().out.startswith("Tyre [v2] [/b] :car: ")

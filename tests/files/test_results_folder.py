@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 import os
 import signal
+import threading
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -291,3 +293,25 @@ def test_a_users_file_in_the_place_of_what_makes_results_is_refused(tmp_path: Pa
     refused = pytest.raises(InputError, match=r"maker\.toml")
     with refused, results_folder(tmp_path, "run", NAMES, origin=Maker()):
         pass
+
+
+def test_threads_save_side_by_side(tmp_path: Path) -> None:
+    """Each with its own list of files: none takes another's file for one of the user."""
+    begun = threading.Barrier(4)
+
+    def saved(name: str) -> dict[str, object]:
+        folder = tmp_path / name
+        with results_folder(folder, "run", ["*.txt"], origin=None):
+            begun.wait(10)
+            for number in range(3):
+                with atomic_path(folder / f"{number}.txt") as temporary:
+                    temporary.write_text(name)
+                begun.wait(10)
+            write_json({"study": name}, folder / "summary.json")
+        return summary(folder)
+
+    with ThreadPoolExecutor(4) as threads:
+        summaries = list(threads.map(saved, "abcd"))
+    assert [(each["study"], each["files"], each["complete"]) for each in summaries] == [
+        (name, ["0.txt", "1.txt", "2.txt"], True) for name in "abcd"
+    ]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import tomllib
 from pathlib import Path
 from typing import Any
 
@@ -72,6 +73,13 @@ def test_it_writes_schemas_and_settings(here: Path, capsys: pytest.CaptureFixtur
     # Nothing of the machine: a project keeps the folder.
     summary = json.loads((here / "schemas/summary.json").read_text(encoding="utf-8"))
     assert summary["versions"] == {"tyrefem": tyrefem.__version__}
+
+
+def test_settings_have_a_folder_of_any_name(here: Path) -> None:
+    for folder in ('my "tyres" \\ ü', "other"):
+        assert main(["schema", "--out", folder]) == 0
+        rules = tomllib.loads((here / SETTINGS).read_text(encoding="utf-8"))["rule"]
+        assert rules[0]["schema"]["path"] == f"{folder}/study.json"
 
 
 def test_settings_of_the_user_are_kept(here: Path, capsys: pytest.CaptureFixture[str]) -> None:

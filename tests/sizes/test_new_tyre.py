@@ -205,6 +205,13 @@ def test_files_of_the_user_are_not_replaced(here: Path, capsys: pytest.CaptureFi
     assert tf.study("elsewhere/studies/passenger-225-45r17").section.name == "passenger-225-45r17"
 
 
+@pytest.mark.parametrize("kind", ["section", "tyre"])
+def test_a_line_break_in_an_option_leaves_a_file_that_can_be_read(kind: str, here: Path) -> None:
+    assert main(["new", kind, "205/60R15\n", "--set", "crown_radius=700 mm\n"]) == 0
+    file = next((here / "geometry").iterdir())
+    assert tf.geometry.load(str(file)).outer_diameter == pytest.approx(0.627, abs=1e-3)
+
+
 def test_the_answer_as_json(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["new", "tyre", "195/65R15", "--json"]) == 0
     answer = json.loads(capsys.readouterr().out)

@@ -72,7 +72,9 @@ def test_locked_wheel_is_printed_and_drawn(here: Path, capfd: pytest.CaptureFixt
         (["rise", "--speed", "0 m/s", *PAD[2:], "--pressure", "1 bar"], "--speed"),
         (["rise", *PAD[:4], "--friction=-0.5", "--pressure", "1 bar"], "--friction"),
         (["locked-wheel", "--length", "0 mm"], "tyrefem: --length: "),
-        (["locked-wheel", "--decomposition", "0 K"], "tyrefem: --decomposition: must be finite and more than 0"),
+        (["locked-wheel", "--decomposition", "0 K"], "tyrefem: --decomposition: '0 K' is out of range"),
+        (["locked-wheel", "--friction", "0"], "tyrefem: --friction: '0' is out of range: must be at least 1e-06"),
+        (["locked-wheel", "--pressure", "1e-300 Pa"], "tyrefem: --pressure: '1e-300 Pa' is out of range"),
         (["locked-wheel", "--out", "skid.gif"], "--out"),
     ],
 )

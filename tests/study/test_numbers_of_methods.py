@@ -11,12 +11,16 @@ import numpy as np
 import pytest
 
 import tyrefem as tf
+from tyrefem.api import identify
 from tyrefem.api.numbers import check_numbers
 from tyrefem.errors import InputError
 from tyrefem.measured import read_table
 from tyrefem.quantity import registry
 
 pytestmark = pytest.mark.fast
+
+
+SPEEDS = {"drive.speed": ["10 mph", "20 mph"]}
 
 
 @pytest.fixture(scope="module")
@@ -54,6 +58,12 @@ def coarse() -> tf.Study:
         ("natural_frequencies", {"harmonics": [1.5]}, r"harmonics: must be whole numbers from 0 to 60, not \[1\.5\]"),
         ("natural_frequencies", {"harmonics": 5}, "harmonics: must be whole numbers from 0 to 60, not 5"),
         ("natural_frequencies", {"count": 1.5}, "count: must be a whole number from 1 to 40, not 1.5"),
+        ("natural_frequencies", {"count": True}, "count: must be a whole number from 1 to 40, not True"),
+        ("tyre_forces", {"loads": iter([3e3, 3e3])}, "loads: give at least two different loads"),
+        ("tyre_forces", {"slips": iter([0.1, math.nan])}, "slips: must be finite, not nan"),
+        ("tyre_forces", {"harmonics": "80"}, "harmonics: must be a whole number of at least 24, not '80'"),
+        ("tyre_forces", {"harmonics": 0}, "harmonics: must be a whole number of at least 24, not 0"),
+        ("tyre_forces", {"slips": [], "slip_angles": []}, "slip_angles: give at least one slip angle or one slip"),
         (
             "life",
             {"temperature": "80 degC"},
@@ -66,8 +76,19 @@ def coarse() -> tf.Study:
         ("save", {"path": ""}, "path: is empty"),
         ("save", {"path": "/"}, "/: is a folder; a file is wanted"),
         ("sweep", {"vary": ["drive.speed"]}, "vary: must be a mapping like"),
+        ("sweep", {"vary": SPEEDS, "folder": 3.5}, r"folder: must be a path, as text or Path, not 3\.5"),
+        ("sweep", {"vary": SPEEDS, "folder": ""}, "folder: is empty"),
+        ("sweep", {"vary": SPEEDS, "scheduler": 4}, "scheduler: must be Here, Local or Dask, not 4"),
+        ("sweep", {"vary": SPEEDS, "settings": {}}, "settings: must be SweepSettings, not {}"),
         ("explore", {"vary": 3.5}, "vary: must be a mapping like"),
+        ("explore", {"tolerance": "1 K"}, "tolerance: must be a positive number of kelvins, not '1 K'"),
+        ("explore", {"tolerance": 0}, "tolerance: must be a positive number of kelvins, not 0"),
+        ("explore", {"scheduler": 4}, "scheduler: must be Here, Local or Dask, not 4"),
         ("compare", {"table": 3.5}, "table: a value of type float is no measured table"),
+        ("diagnose", {"workers": "2"}, "workers: must be a whole number of at least 1, not '2'"),
+        ("diagnose", {"workers": 0}, "workers: must be a whole number of at least 1, not 0"),
+        ("diagnose", {"strategy": "forward"}, "strategy: must be a Strategy, with check and search, not 'forward'"),
+        ("diagnose", {"criterion": "BIC"}, "criterion: must be a Criterion, with of_fit and of_linear, not 'BIC'"),
         ("diagnose", {"largest": "2"}, "largest: must be a number of effects from 1 to 3, not '2'"),
         ("diagnose", {"looks": "2"}, "looks: must be a whole number of at least 1, not '2'"),
         ("diagnose", {"settings": {}}, "settings: must be DiagnosisSettings, not {}"),
@@ -86,6 +107,58 @@ def test_numbers_of_every_kind_pass() -> None:
     check_numbers(load=np.float64(4e3), drum_diameter=math.inf, slips=np.array([0.1]), friction=lambda speed, _: speed)
     check_numbers(slip_angle=(0.1, np.int64(0)), pressure=None, cambers=[], curve=True)
     check_numbers(load=np.array(4e3), loads=(each for each in (3e3, 4e3)))
+
+
+def test_arguments_of_a_comparison_and_of_a_plan() -> None:
+    measured = tf.study("example-validation")
+    for options, message in (
+        ({"k": "2"}, "the coverage factor k must be more than 0 and less than 100, not '2'"),
+        ({"settings": {}}, "settings: must be ReducedInputSettings, not {}"),
+        ({"result": 5}, "result: must be the result of a run, not 5"),
+    ):
+        with pytest.raises(InputError, match=message):
+            measured.compare(**options)  # type: ignore[arg-type]
+    with pytest.raises(InputError, match="workers: must be a whole number of at least 1, not 0"):
+        tf.study("hidden-effect").plan(workers=0)
+
+
+def test_a_quick_look_at_a_life_has_the_temperatures_of_the_command() -> None:
+    tyre = tf.study("nasa-22x5.5-8pr", {"mesh.size": "15 mm", "mechanics.strain": "fem"})
+    for temperature in (-300.0, 301.0):
+        with pytest.raises(InputError, match=f"temperature: no tyre has {temperature:g} degC; allowed: -273.15 to 300"):
+            tyre.life(temperature=temperature)
+    with pytest.raises(InputError, match="result: must be the result of a run, not 5"):
+        tyre.life(result=5)  # type: ignore[arg-type]
+
+
+def test_a_text_is_no_list_of_variants_places_or_tables(coarse: tf.Study, tmp_path: Path) -> None:
+    design = coarse.sweep({"drive.speed": [f"{speed} mph" for speed in range(5, 17)]}, reduced="never")
+    # Not the variants 1 and 2.
+    for variants in ("12", 12):
+        with pytest.raises(InputError, match="variants: must be a list of variants"):
+            design.to_vtk(tmp_path, variants)  # type: ignore[arg-type]
+    with pytest.raises(InputError, match="folder: must be a path"):
+        design.to_vtk(3.5, ["1"])  # type: ignore[arg-type]
+    pressed = coarse.press(deflection=0.015, motion="linear")
+    for places in ("tread", 5, [5]):
+        with pytest.raises(InputError, match="at: must be a list of places or regions"):
+            pressed.save(tmp_path, at=places)  # type: ignore[arg-type]
+    for name in ("tables", "without", "tests"):
+        with pytest.raises(InputError, match=f"{name}: must be a list, not 'T1'"):
+            identify("trtlab", **{name: "T1"})  # type: ignore[arg-type]
+    with pytest.raises(InputError, match="rig: must be a path"):
+        identify(5)  # type: ignore[arg-type]
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_result_from_a_file_and_of_a_user_that_there_is_not(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="~nobody-here/out: no such folder of results"):
+        tf.load("~nobody-here/out")
+    (tmp_path / "verdict.json").write_text("{}")
+    with pytest.raises(InputError, match=r"verdict\.json: is damaged, or no verdict of 'tyrefem diagnose'"):
+        tf.load(tmp_path)
+    with pytest.raises(InputError, match=r"verdict\.json: is a file; give its folder of results"):
+        tf.load(tmp_path / "verdict.json")
 
 
 @pytest.mark.parametrize("value", [None, 3.5, b"x", [], "", "a\0b"])

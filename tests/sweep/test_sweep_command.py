@@ -12,7 +12,12 @@ from pyarrow import parquet
 from tyrefem import load, study
 from tyrefem.cli import main
 from tyrefem.errors import InputError
-from tyrefem.sweep.design import loaded
+from tyrefem.sweep.design import DesignData, loaded
+from tyrefem.sweep.envelope import Envelope
+from tyrefem.sweep.sweep import sweep
+from tyrefem.sweep.tornado import Tornado
+from tyrefem.variants.card import EnvelopeCard, SweepCard
+from tyrefem.variants.plan import plan_of
 
 TYRE = "nasa-22x5.5-8pr"
 COARSE = ["--set", "mesh.size=12 mm", "--set", "numerics.tolerance=0.5 K", "--set", "drive.duration=120 s"]
@@ -123,6 +128,31 @@ def test_one_failing_variant_ends_with_1_and_is_told(tmp_path: Path, capsys: pyt
     assert (pd.read_csv(tmp_path / "sweep.csv")["failure"].notna()).tolist() == [False, False, True, False]
 
 
+def test_a_search_with_a_failed_variant_ends_with_1_and_tells_it(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    box = ["--vary", "drive.load=2700 lbf,8000 lbf", "--vary", "drive.pressure=20 psi,83 psi"]
+    search = ["--minimise", "deflection_m", "--out", str(tmp_path), "--no-pictures"]
+    assert main(["sweep", TYRE, *box, *QUICK, *search]) == 1
+    assert "tyrefem: optimum: variant 3: drive.load: " in capsys.readouterr().err
+    assert list(json.loads((tmp_path / "summary.json").read_text())["failures"]) == ["optimum: variant 3"]
+    assert load(tmp_path).complete
+
+
+def test_failed_runs_of_every_answer_are_failures_of_the_design() -> None:
+    quick = study(TYRE, {"mesh.size": "14 mm", "numerics.tolerance": "0.5 K", "drive.duration": "60 s"})
+    plan = plan_of(quick, {"drive.load": ["2700 lbf", "8000 lbf"], "drive.pressure": ["20 psi", "83 psi"]})
+    swept = sweep(plan, reduced="never")
+    rows = pd.DataFrame({"load": ["8 kN", "9 kN"], "pressure": ["2 bar", "2 bar"], "failure": ["", "bursts"]})
+    asked = EnvelopeCard.check({"below": 90.0})
+    answers = {"tornado": Tornado(swept, ("hottest_degC",)), "envelope": Envelope(quick, asked, rows, 2)}
+    design = DesignData(quick, SweepCard.check({"study": TYRE, "tornado": {}}), None, None, answers)
+    failures = design.failures
+    assert list(failures) == ["tornado: 3", "envelope: 9 kN at 2 bar"]
+    assert failures["envelope: 9 kN at 2 bar"] == "bursts"
+    assert design.failed == {}
+
+
 SPEEDS = ["--vary", "drive.speed=10 mph:20 mph"]
 
 
@@ -152,6 +182,7 @@ SPEEDS = ["--vary", "drive.speed=10 mph:20 mph"]
         ([*SPEEDS, "--reduced", "perhaps"], "allowed: auto, never, always"),
         ([*SPEEDS, "--tolerance", "0 K"], "tolerance: must be positive, not 0 K"),
         ([*SPEEDS, "--tolerance", "1 mm"], "--tolerance: 'mm' is not a unit of this quantity"),
+        ([*SPEEDS, "--scheduler", "foo", "--workers", "2"], "--workers: a cluster has its workers"),
         ([*SPEEDS, "--scheduler", "foo"], "--scheduler: no Dask scheduler at 'foo': missing port number"),
     ],
 )

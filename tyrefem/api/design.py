@@ -7,6 +7,7 @@ from pathlib import Path
 
 from tyrefem.api.result import Result
 from tyrefem.api.verbs import shown, with_verbs
+from tyrefem.output import as_path
 from tyrefem.sweep import design
 
 
@@ -60,4 +61,4 @@ class Design(design.DesignData):
         """
         from tyrefem.reports.sweep_variants import write_variants
 
-        return write_variants(self, Path(folder), variants, revolved=revolved)
+        return write_variants(self, as_path(folder, "folder"), variants, revolved=revolved)

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tyrefem.api.verbs import with_verbs
+from tyrefem.errors import InputError
 from tyrefem.heating_test import identification
 
 if TYPE_CHECKING:
@@ -71,6 +72,9 @@ def identify(
     ------
     InputError : the card or a table cannot be used.
     """
+    for name, given in {"tables": tables, "tests": tests, "without": without}.items():
+        if isinstance(given, str | bytes | Path) or not isinstance(given, Iterable):
+            raise InputError(f"must be a list, not {given!r:.60}", field=name)
     data = identification.identify(
         rig, tables, tests=tests, without=without, linear=linear, fineness=fineness, progress=progress
     )

@@ -48,9 +48,13 @@ def load(folder: str | Path) -> Result | Comparison | DiagnosisRecord | Record:
     """
     from tyrefem.simulation.stored_result import FILE, read_result
 
-    place = as_path(folder, "folder").expanduser()
+    place = as_path(folder, "folder")
+    with suppress(RuntimeError):  # ~NAME without such a user is a name as any other
+        place = place.expanduser()
     if place.is_file() and place.name == FILE:
         place = place.parent
+    if place.is_file():
+        raise InputError(f"is a file; give its folder of results, or {FILE} in it", file=place)
     if not place.is_dir():
         raise InputError(f"no such folder of results{_near(place)}", file=place)
     if (place / FILE).is_file():
@@ -65,7 +69,8 @@ def load(folder: str | Path) -> Result | Comparison | DiagnosisRecord | Record:
     if (place / "verdict.json").is_file():
         from tyrefem.api.diagnosis_record import DiagnosisRecord
 
-        read_json(place / "verdict.json")
+        if not {"verdict", "study", "sets"} <= set(read_json(place / "verdict.json")):
+            raise InputError("is damaged, or no verdict of 'tyrefem diagnose'", file=place / "verdict.json")
         whole = not (place / SUMMARY).is_file() or bool(read_json(place / SUMMARY).get(COMPLETE, True))
         return DiagnosisRecord(place, "diagnose", whole)
     if not (place / SUMMARY).is_file():

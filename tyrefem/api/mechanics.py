@@ -13,6 +13,7 @@ from tyrefem.mechanics.footprint import press as presses
 from tyrefem.mechanics.rolling import force_table as force_tables
 from tyrefem.mechanics.rolling import roll as rolls
 from tyrefem.mechanics.rolling import slip_curve as slip_curves
+from tyrefem.output import as_path
 
 if TYPE_CHECKING:
     from tyrefem.api.wear import RollingWear
@@ -113,7 +114,7 @@ class RollingWheel(rolls.RolledStudy):
         """
         from tyrefem.reports.roll import write_vtk
 
-        return write_vtk(self, Path(folder), temperature)
+        return write_vtk(self, as_path(folder, "folder"), temperature)
 
 
 class ForcesOverSlip(slip_curves.SlipCurve):

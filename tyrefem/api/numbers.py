@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from typing import Any
 
@@ -41,6 +41,15 @@ def check_numbers(*, curve: bool = False, **values: Any) -> None:
         several = _is_list(value) and (name in LISTS or (curve and name in SEVERAL))
         for each in value if several else (value,):
             _check(name, LISTS.get(name) or UNITS[name], each)
+
+
+def kept(value: Any) -> Any:
+    """A value, and the numbers of a generator, which can be read once only, as a tuple.
+
+    >>> kept(each for each in (3e3, 4e3)), kept(None)
+    ((3000.0, 4000.0), None)
+    """
+    return tuple(value) if isinstance(value, Iterator) else value
 
 
 def _is_list(value: object) -> bool:

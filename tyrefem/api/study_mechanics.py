@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING
 
-from tyrefem.api.numbers import check_numbers
+from tyrefem.api.numbers import check_numbers, kept
 from tyrefem.api.verbs import given, with_verbs
 from tyrefem.inputs import study as studies
 
@@ -152,6 +152,7 @@ class StudyMechanics(studies.StudyData):
         from tyrefem.api.mechanics import ForcesOverSlip
         from tyrefem.mechanics.rolling.slip_curve import slip_curve
 
+        slip_angle, slip = kept(slip_angle), kept(slip)
         wheel = given(pressure=pressure, drum_diameter=drum_diameter)
         check_numbers(
             slip_angle=slip_angle, slip=slip, torque=torque, axle_force=axle_force, turn_slip=turn_slip,
@@ -190,8 +191,10 @@ class StudyMechanics(studies.StudyData):
         from tyrefem.api.mechanics import ForceTable
         from tyrefem.mechanics.rolling.force_table import tyre_forces
 
+        loads = kept(loads)
         options = given(
-            slip_angles=slip_angles, slips=slips, cambers=cambers, pressure=pressure, drum_diameter=drum_diameter,
+            slip_angles=kept(slip_angles), slips=kept(slips), cambers=kept(cambers), pressure=pressure,
+            drum_diameter=drum_diameter,
         )  # fmt: skip
         check_numbers(loads=loads, friction=friction, speed=speed, **options)
         data = tyre_forces(

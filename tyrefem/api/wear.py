@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tyrefem.api.numbers import check_numbers
+from tyrefem.output import as_path
 from tyrefem.wear.drive_wear import DriveWear
 from tyrefem.wear.ring_wear import RingWear
 
@@ -33,7 +34,9 @@ class RollingWear(RingWear):
         ------
         InputError : a tread that is worn through; the folder cannot be written; files in it are not of this command.
         """
-        return _save(self.rolled.study, self.rolled, self, Path(folder), distance, pictures=pictures, force=force)
+        return _save(
+            self.rolled.study, self.rolled, self, as_path(folder, "folder"), distance, pictures=pictures, force=force
+        )
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -46,7 +49,7 @@ class WearOverDrive(DriveWear):
         self, folder: str | Path, distance: float | None = None, *, pictures: bool = True, force: bool = False
     ) -> Path:
         """Write the files of `tyrefem wear`, as `RollingWear.save`."""
-        return _save(self.study, None, self, Path(folder), distance, pictures=pictures, force=force)
+        return _save(self.study, None, self, as_path(folder, "folder"), distance, pictures=pictures, force=force)
 
 
 def _save(

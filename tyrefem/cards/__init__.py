@@ -214,6 +214,8 @@ def read_toml(path: str | Path) -> dict[str, Any]:
         raise InputError(f"not valid TOML: {error}", file=path) from None
     except OSError as error:
         raise InputError(f"cannot be read: {error.strerror or error}", file=path) from None
+    except (ValueError, RecursionError):
+        raise InputError("not valid TOML: a number is too long, or lists are nested too deep", file=path) from None
 
 
 def _unquoted(path: Path, message: str) -> str:

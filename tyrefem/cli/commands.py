@@ -205,8 +205,11 @@ def _warnings_shown() -> Iterator[None]:
 
 
 def _handled_error(error: Exception) -> tuple[object, int]:
-    """Handle usage errors of the parser and a solver without a solution; raise any other error, which is a defect."""
+    """Handle usage errors of the parser, a solver without a solution, and names of files that are no text; raise any
+    other error, which is a defect."""
     name = type(error).__name__
+    if isinstance(error, UnicodeEncodeError) and "\ud800" <= error.object[error.start] <= "\udfff":
+        return "the name of a file or folder is not UTF-8 text, so that no result can hold it: rename it", 2
     if isinstance(error, typer.Abort):
         return "interrupted; nothing was written", 130
     if name == "SolverError":

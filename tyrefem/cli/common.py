@@ -98,10 +98,10 @@ def settings(pairs: list[str] | None) -> dict[str, Any]:
         if not equals or not key.strip():
             raise InputError(f"'{pair}' is not KEY=VALUE, e.g. drive.speed='25 mph'", field="--set")
         try:
-            value = tomllib.loads(f"value = {text}")["value"]
-        except tomllib.TOMLDecodeError:
-            value = text
-        changes[key.strip()] = value
+            parsed = tomllib.loads(f"value = {text}")
+        except (ValueError, RecursionError):  # beside errors of TOML: an endless number, or endless brackets
+            parsed = {}
+        changes[key.strip()] = parsed["value"] if len(parsed) == 1 else text
     return changes
 
 

@@ -73,10 +73,11 @@ def life(
 
 
 def _temperature(text: str) -> float:
+    from tyrefem.fatigue.life import HOTTEST
     from tyrefem.quantity import Unit
 
     try:
-        return Unit("degC", le=300)(text)
+        return Unit("degC", le=HOTTEST)(text)
     except InputError as error:
         raise error.within(field="--temperature") from None
 

@@ -87,7 +87,7 @@ def new(
         return
     if of_size:
         raise InputError("--rim, --load, --pressure and --set go with a tyre's size such as 205/60R15", field="name")
-    if not re.fullmatch(r"\w[\w.-]*", name) or name.endswith(".toml"):
+    if not re.fullmatch(r"\w[\w.-]*", name) or name.lower().endswith(".toml"):
         raise InputError(
             f"'{name}' is not allowed as a card's name; allowed: letters, digits, . _ -, without '.toml' at the end"
         )

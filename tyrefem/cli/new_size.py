@@ -48,7 +48,7 @@ def new_size(kind: str, size: str, numbers: Mapping[str, Any], out: Path | None,
     name = re.sub(r"[^\w.]+", "-", drawn.size.text.lower())
     folder = Path(library.FOLDERS[kind])
     target = out or (folder / name / "study.toml" if kind == "study" else folder / f"{name}.toml")
-    if kind == "study" and target.suffix != ".toml":
+    if kind == "study" and target.suffix.lower() != ".toml":
         target = target / "study.toml"
     if out is None and os.path.lexists(target):
         raise InputError("the file exists already; nothing was written; to replace it: --out FILE --force", file=target)
@@ -56,7 +56,8 @@ def new_size(kind: str, size: str, numbers: Mapping[str, Any], out: Path | None,
         raise InputError("exists and may have been edited; replace it with --force", file=target, field="--out")
     place_of_output(target.parent)
     options = " ".join(f"--set {key}={shlex.quote(str(value))}" for key, value in numbers.items())
-    command = f"tyrefem new {kind} {shlex.quote(size)} {options}".rstrip()
+    # In one line, as it stands in a comment of the file.
+    command = " ".join(f"tyrefem new {kind} {shlex.quote(size)} {options}".split())
     if kind == "section":
         text = section_text(drawn, command)
     else:

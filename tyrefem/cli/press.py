@@ -94,7 +94,8 @@ def press(
 
     if critical_speed:
         others = {"--load": load, "--deflection": deflection, "--drum": drum, "--camber": camber, "--motion": motion}
-        refused = [option for option, text in others.items() if text is not None] + ["--at"] * bool(at)
+        refused = [option for option, text in others.items() if text is not None]
+        refused += ["--at"] * bool(at) + ["--balanced"] * balanced
         if refused:
             raise InputError("no road acts on critical speeds; leave it out with --critical-speed", field=refused[0])
         loaded = load_study(study, settings(changes), case)

@@ -122,7 +122,13 @@ def _bars() -> Iterator[Tick]:
             return Text(stage.words if at_work and stage is not None else "")
 
     bar = BarColumn(bar_width=24)
-    columns = (TextColumn("{task.description}"), bar, TaskProgressColumn(), TimeElapsedColumn(), Remaining())
+    columns = (
+        TextColumn("{task.description}", markup=False),
+        bar,
+        TaskProgressColumn(),
+        TimeElapsedColumn(),
+        Remaining(),
+    )
     with Progress(*columns, console=Console(stderr=True), transient=True) as shown:
         tasks: dict[str, Any] = {}
         endless: list[str] = []

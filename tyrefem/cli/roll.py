@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -144,7 +145,7 @@ def _values(name: str, text: str) -> float | list[float]:
         values = [read_quantity(option, part, unit) for part in text.split(",")]
         return values if len(values) > 1 else values[0]
     parts = text.split(":")
-    if len(parts) != 3 or not parts[2].strip().isdigit() or not 2 <= int(parts[2]) <= MOST:
+    if len(parts) != 3 or not re.fullmatch("[0-9]{1,9}", parts[2].strip()) or not 2 <= int(parts[2]) <= MOST:
         raise InputError(f"'{text}' is not from:to:number, like '-10 deg:10 deg:21' (number 2 to {MOST})", field=option)
     first, last = (read_quantity(option, part, unit) for part in parts[:2])
     count = int(parts[2])

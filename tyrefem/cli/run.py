@@ -23,6 +23,8 @@ from tyrefem.interruption import interruption_delayed, keeping
 from tyrefem.output.folder import results_folder
 
 if TYPE_CHECKING:
+    import pandas as pd
+
     from tyrefem.api import Result, Study
     from tyrefem.sweep.campaign import CampaignData
 
@@ -59,10 +61,13 @@ def run(
         campaign = loaded.campaign()
         _refuse_overlaid(campaign, values)
         with results_folder(place, "run", campaign_files(campaign, place), **given) as folder:
-            _campaign(campaign, folder, pictures, vtk, revolved, parquet)
+            table = _campaign(campaign, folder, pictures, vtk, revolved, parquet)
+        _tell_campaign(campaign, table, folder, pictures)
     else:
         with results_folder(place, "run", run_files(loaded, place), **given) as folder:
-            _single(loaded, folder, pictures, vtk, revolved, parquet)
+            words = _single(loaded, folder, pictures, vtk, revolved, parquet)
+        # After the folder is closed: a line that cannot be printed leaves it complete.
+        say(*words)
         answer_with(folder / "summary.json")
 
 
@@ -73,7 +78,8 @@ def _usual_place(study: Study) -> Path:
     return place.with_name(f"{study.name}-run") if taken else place
 
 
-def _single(study: Study, folder: Path, pictures: bool, vtk: bool, revolved: bool, parquet: bool) -> None:
+def _single(study: Study, folder: Path, pictures: bool, vtk: bool, revolved: bool, parquet: bool) -> tuple[str, ...]:
+    """Run and write; the lines for people."""
     from tyrefem.reports.run_files import write_tables
     from tyrefem.simulation.estimate import RunEstimate
 
@@ -95,11 +101,12 @@ def _single(study: Study, folder: Path, pictures: bool, vtk: bool, revolved: boo
                 result.plot(folder / "pictures")
                 result.report(folder / "report.html")
     warn(() if reached else result.warnings, warned)
-    say(_words(result))
-    say(f"results in {folder}" + (f"; read {folder / 'report.html'}" if pictures else ""))
+    words = _words(result), f"results in {folder}" + (f"; read {folder / 'report.html'}" if pictures else "")
     if reached:
+        say(*words)
         answer_with(folder / "summary.json")
         raise Interrupted(f"finished files are in {folder}", at=reached)
+    return words
 
 
 def _words(result: Result) -> str:
@@ -138,7 +145,10 @@ def _words(result: Result) -> str:
     return "\n".join(lines)
 
 
-def _campaign(campaign: CampaignData, folder: Path, pictures: bool, vtk: bool, revolved: bool, parquet: bool) -> None:
+def _campaign(
+    campaign: CampaignData, folder: Path, pictures: bool, vtk: bool, revolved: bool, parquet: bool
+) -> pd.DataFrame:
+    """Run all cases and write; the table of cases."""
     from tyrefem.reports.campaign import run_campaign, write_campaign_report
 
     study = campaign.study
@@ -158,7 +168,11 @@ def _campaign(campaign: CampaignData, folder: Path, pictures: bool, vtk: bool, r
             table = run_campaign(campaign, folder, lambda done, _all: step(done), each, parquet=parquet)
         if pictures:
             write_campaign_report(campaign, table, folder / "report.html")
-    failed = table[table["failure"] != ""]
+    return table
+
+
+def _tell_campaign(campaign: CampaignData, table: pd.DataFrame, folder: Path, pictures: bool) -> None:
+    study, failed = campaign.study, table[table["failure"] != ""]
     answer_with({"study": study.name, "cases": table.to_dict("records")})
     shown = ["case", "hottest_degC", "rolling_resistance_coefficient", "contained-air_degC"]
     say(study.title)

@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import functools
 import inspect
+import os
+import sys
 from collections.abc import Callable, Mapping
 from contextvars import ContextVar
 from dataclasses import dataclass
@@ -46,7 +48,7 @@ def say(*lines: object) -> None:
     """Print lines for people on stdout; nothing with ``--json`` or ``--quiet``."""
     if not (shell().quiet or shell().as_json):
         for line in lines:
-            typer.echo(line)
+            _print(f"{line}\n")
 
 
 def say_table(table: Any) -> None:
@@ -54,7 +56,19 @@ def say_table(table: Any) -> None:
     if not (shell().quiet or shell().as_json):
         from rich.console import Console
 
-        Console(highlight=False).print(table)
+        # A title or a name may have brackets or colons, which are no marks of rich.
+        console = Console(highlight=False, markup=False, emoji=False)
+        with console.capture() as printed:
+            console.print(table)
+        _print(printed.get())
+
+
+def _print(text: str) -> None:
+    """Print text on stdout. A reader that has gone, such as `head`, gets no more, and the work goes on."""
+    try:
+        typer.echo(text, nl=False)
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def notify(message: object) -> None:
@@ -68,13 +82,13 @@ def answer_with(data: Mapping[str, Any] | Path) -> None:
     if not shell().as_json:
         return
     if isinstance(data, Path):
-        typer.echo(data.read_text(encoding="utf-8"), nl=False)
+        _print(data.read_text(encoding="utf-8"))
         return
     import json
 
     from tyrefem.output import jsonable
 
-    typer.echo(json.dumps(jsonable(data), indent=1))
+    _print(f"{json.dumps(jsonable(data), indent=1)}\n")
 
 
 def speaking(command: Callable[..., Any]) -> Callable[..., Any]:

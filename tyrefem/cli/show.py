@@ -64,6 +64,8 @@ def show(
     if case is not None and kind not in OF_A_CASE:
         raise InputError(f"is for {', '.join(OF_A_CASE)}, not for a {kind}", field="--case")
     values = settings(changes)
+    if values and kind == "effect":
+        raise InputError("changes a card; an effect has its values in a study", field="--set")
     if out is not None and kind not in _SHOWN:
         raise InputError(f"a {kind} is printed, not drawn: remove this option", field="--out")
     shown: dict[str, Any] = {"kind": kind, "name": name}
@@ -79,7 +81,7 @@ def show(
                 facts = _write_mesh(name, values, case, out)
             answer_with({**shown, "facts": facts, "picture": out})
         return
-    stem = Path(name).stem if name.endswith(".toml") else Path(name).resolve().name
+    stem = Path(name).stem if name.lower().endswith(".toml") else Path(name).resolve().name
     if looks_like_size(name):
         stem = name.replace("/", "-").replace(" ", "-")
     path = out or Path(f"{kind}-{stem}.png")

@@ -23,6 +23,8 @@ group = typer.Typer(
 )
 #: Largest allowed value of each quantity, by unit: no pad, wheel or track has more.
 MOST = {"m/s": 400.0, "m": 1e5, "1": 100.0, "Pa": 1e10, "N": 1e9, "delta_degC": 1e4}
+#: Least value of each number of the locked wheel, SI.
+LEAST = 1e-6
 #: Speeds of the printed table of the locked wheel, km/h.
 SPEEDS = (10, 20, 30, 40, 50, 60, 80, 100, 130)
 
@@ -130,7 +132,7 @@ def locked_wheel(
         "decomposition_rise": ("--decomposition", decomposition, "delta_degC"),
     }
     changes: dict[str, Any] = {
-        name: _read(option, text, unit) for name, (option, text, unit) in given.items() if text is not None
+        name: _read(option, text, unit, LEAST) for name, (option, text, unit) in given.items() if text is not None
     }
     with _options_named({name: option for name, (option, _, _) in given.items()}):
         car = replace(LockedWheel(), **changes)
@@ -178,11 +180,11 @@ def _options_named(options: Mapping[str, str]) -> Iterator[None]:
         raise InputError(error.message, field=options.get(error.field or "", error.field)) from None
 
 
-def _read(option: str, text: str, unit: str) -> float:
+def _read(option: str, text: str, unit: str, least: float | None = None) -> float:
     from tyrefem.quantity import Unit
 
     try:
-        return Unit(unit, le=MOST[unit])(text)
+        return Unit(unit, ge=least, le=MOST[unit])(text)
     except InputError as error:
         raise error.within(field=option) from None
 

@@ -88,6 +88,7 @@ def _picture(comparison: LawComparison) -> bytes:
 
 def _print(comparison: LawComparison) -> None:
     from rich.table import Table
+    from rich.text import Text
 
     titles = {
         part.name: part.name if part.name == part.title else f"{part.name} {part.title}" for part in comparison.parts
@@ -103,7 +104,7 @@ def _print(comparison: LawComparison) -> None:
         if row["kind"] != before:
             before = row["kind"]
             table.add_section()
-            table.add_row(f"[bold]{heading}[/bold]")
+            table.add_row(Text(heading, style="bold"))
         name = "deflection, mm" if row["kind"] == "deflection" else titles.get(row["name"], row["name"])
         table.add_row(name, *(f"{factor * row[law]:.2f}" for law in laws))
     say_table(table)

@@ -187,6 +187,8 @@ def sweep(
     from tyrefem.reports.sweep_variants import chosen_variants, refuse_unknown, write_variants
     from tyrefem.variants.execution import Execution
 
+    if scheduler is not None and workers is not None:
+        raise InputError("a cluster has its workers: leave it out with --scheduler", field="--workers")
     given = questions_of_flags(
         vary=vary, link=link, uncertain=uncertain, sample=sample, count=count, seed=seed, cases=cases, limit=limit,
         time_to=time_to, answer=answer, pareto=pareto, indices=indices, tornado=tornado, tolerance_of=tolerance_of,
@@ -219,15 +221,16 @@ def sweep(
     answer_with(folder / "summary.json")
     say(*summary["words"])
     say(f"results in {folder}" + (f"; read {folder / 'sweep.html'}" if pictures else ""))
-    for variant, reason in list(design.failed.items())[:FAILURES_SHOWN]:
-        fail(f"variant {variant}: {reason}")
-    if len(design.failed) > FAILURES_SHOWN:
-        fail(f"... and {len(design.failed) - FAILURES_SHOWN} more; all are in {folder / 'sweep.csv'}")
+    failures = design.failures
+    for run, reason in list(failures.items())[:FAILURES_SHOWN]:
+        fail(f"{f'variant {run}' if run in design.failed else run}: {reason}")
+    if len(failures) > FAILURES_SHOWN:
+        fail(f"... and {len(failures) - FAILURES_SHOWN} more; all are in the tables of {folder}")
     if design.interrupted == "interrupted":
         raise Interrupted(kept)
     if design.interrupted:
         raise typer.Exit(fail(f"{design.interrupted}; {kept}", 1))
-    if design.failed:
+    if failures:
         raise typer.Exit(1)
 
 

@@ -226,13 +226,18 @@ def questions(
     from tyrefem.variants.card import SweepCard
 
     path = Path(name)
-    is_file = path.suffix == ".toml" and path.is_file() and "study" in read_toml(path)
+    is_file = path.suffix.lower() == ".toml" and path.is_file() and "study" in read_toml(path)
     if is_file or (path / "sweep.toml").is_file() or name in library.names("sweep"):
         file = library.find("sweep", name)
         stem = file.parent.resolve().name if file.name == "sweep.toml" else file.stem
         with _naming_flags(given):
             return stem, design.loaded(name, changes, **given, **({} if case is None else {"case": case}))
-    if path.suffix != ".toml" and os.sep not in name and name not in library.names("study") and not path.is_dir():
+    if (
+        path.suffix.lower() != ".toml"
+        and os.sep not in name
+        and name not in library.names("study")
+        and not path.is_dir()
+    ):
         known = [*library.names("study"), *library.names("sweep")]
         raise InputError(f"no study or sweep named '{name}'{nearest(name, known)}")
     study = load(name, changes, case)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
+from numbers import Real
 from typing import Any, TypedDict, Unpack
 
 import numpy as np
@@ -94,6 +95,8 @@ def compare(
     NEEDS.check(study, table)
     judged.check()
     work.check()
+    if result is not None and not all(hasattr(result, name) for name in ("study", "readings")):
+        raise InputError(f"must be the result of a run, not {result!r:.60}", field="result")
     planned = experiments(study, table, ignore=columns.ignore, rename=columns.rename)
     if result is None and isinstance(study, StudyData):
         _check_times(study, planned)
@@ -156,7 +159,7 @@ class _Judged:
 
     def check(self) -> None:
         """Raises InputError for a coverage factor out of range."""
-        if not 0.0 < self.k < 100.0:
+        if not isinstance(self.k, Real) or not 0.0 < self.k < 100.0:
             raise InputError(f"the coverage factor k must be more than 0 and less than 100, not {self.k!r}")
 
 
@@ -175,6 +178,8 @@ class _Work:
         """Raises InputError for another word than "auto" or "never"."""
         if not isinstance(self.reduced, str) or self.reduced not in ("auto", "never"):
             raise InputError(f"must be 'auto' or 'never', not {self.reduced!r:.60}", field="reduced")
+        if not isinstance(self.settings, ReducedInputSettings):
+            raise InputError(f"must be ReducedInputSettings, not {self.settings!r:.60}", field="settings")
 
     def done(self, total: int) -> Callable[[int], object]:
         """Function to be called with the number of finished simulations."""

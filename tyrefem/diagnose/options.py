@@ -15,7 +15,7 @@ from tyrefem.diagnose.fitting.selection import Strategy
 from tyrefem.diagnose.forward.drive_response import DriveResponse
 from tyrefem.diagnose.forward.evaluations import ProgressStore, WorkerModels
 from tyrefem.diagnose.forward.strain_law_study import mesh_of_law
-from tyrefem.diagnose.forward.worker_queues import Workers
+from tyrefem.diagnose.forward.worker_queues import WorkerQueues, Workers
 from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
 from tyrefem.diagnose.unknowns.candidates import CandidateSpace, catalogue_candidates
 from tyrefem.effects import use_effects
@@ -25,6 +25,12 @@ from tyrefem.output import as_path
 
 #: Name on the command line -> strategy.
 STRATEGIES: Mapping[str, Strategy] = {"forward": ForwardSelection(), "exhaustive": Exhaustive()}
+#: Replaceable part -> what it is, and the methods that it must have.
+_PARTS: Mapping[str, tuple[str, tuple[str, ...]]] = {
+    "candidates": ("a function of a study", ("__call__",)),
+    "criterion": ("a Criterion, with of_fit and of_linear", ("of_fit", "of_linear")),
+    "strategy": ("a Strategy, with check and search", ("check", "search")),
+}
 
 
 @dataclass(frozen=True)
@@ -60,6 +66,11 @@ class SimulationWork:
     store: ProgressStore | None = None
     verdict_only: bool = False
     pool: WorkerModels | None = None
+
+    def __post_init__(self) -> None:
+        count = self.workers
+        if not isinstance(count, WorkerQueues) and (isinstance(count, bool) or not isinstance(count, int) or count < 1):
+            raise InputError(f"must be a whole number of at least 1, not {count!r:.60}", field="workers")
 
     def look(self, number: int) -> SimulationWork:
         """The options for the look with this number; 0 is the first look."""
@@ -118,6 +129,10 @@ def grouped(options: Mapping[str, Any]) -> tuple[ColumnNames, Method, Simulation
         raise InputError(f"must be DiagnosisSettings, not {settings!r:.60}", field="settings")
     settings = replace(settings, **{name: given.pop(name) for name in ("largest", "looks", "reduced") if name in given})
     parts = {name: given.pop(name) for name in ("candidates", "criterion", "strategy") if name in given}
+    for name, part in parts.items():
+        wanted, methods = _PARTS[name]
+        if not all(callable(getattr(part, method, None)) for method in methods):
+            raise InputError(f"must be {wanted}, not {part!r:.60}", field=name)
     calibration = given.pop("calibration", None)
     table = None if calibration is None else as_path(calibration, "calibration")
     method = Method(**parts, settings=settings, calibration=table)

@@ -19,6 +19,7 @@ from tyrefem.fatigue.matrix_cycle import MatrixCycle
 from tyrefem.fatigue.planes import critical_planes
 from tyrefem.mechanics.cycle_schedule import cycle_schedule
 from tyrefem.mechanics.strain_laws import strain_law, strain_laws
+from tyrefem.quantity import KELVIN
 from tyrefem.requirements import Requirements
 
 if TYPE_CHECKING:
@@ -34,6 +35,8 @@ Indices = NDArray[np.int64]
 NEEDS = Requirements("a fatigue life")
 #: Longest life that is reported, km: a longer one, also of points without cycle, counts as this.
 LONGEST_KM = 1e12
+#: Highest temperature of a quick look, degC.
+HOTTEST = 300.0
 #: Points whose planes are searched together.
 TOGETHER = 64
 
@@ -149,6 +152,11 @@ def life(
     check(study)
     if temperature is not None and (plateau or result is not None):
         raise InputError("goes without a run and without plateau: it holds everywhere", field="temperature")
+    if temperature is not None and not -KELVIN <= temperature <= HOTTEST:
+        allowed = f"allowed: {-KELVIN:g} to {HOTTEST:g} degC"
+        raise InputError(f"no tyre has {temperature:g} degC; {allowed}", field="temperature")
+    if result is not None and not all(hasattr(result, name) for name in ("tyre", "times", "near")):
+        raise InputError(f"must be the result of a run, not {result!r:.60}", field="result")
     if temperature is not None:
         duty = Duty.at_temperature(cycle_schedule(study), temperature)
     else:

@@ -10,6 +10,7 @@ from tyrefem.cards import read_toml
 from tyrefem.cards.file_kinds import expect_kind
 from tyrefem.errors import InputError, nearest
 from tyrefem.heating_test.card import RigCard
+from tyrefem.output import as_path
 
 
 def find(name: str | Path) -> Path:
@@ -18,7 +19,7 @@ def find(name: str | Path) -> Path:
     >>> find("trtlab").name
     'rig.toml'
     """
-    path = Path(name)
+    path = as_path(name, "rig")
     for option in (path, path / "rig.toml"):
         if option.is_file():
             return option

@@ -14,6 +14,7 @@ import secrets
 import shutil
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
+from contextvars import ContextVar
 from pathlib import Path
 from typing import Any
 
@@ -57,8 +58,9 @@ class WriteGuard:
 _NO_GUARD = WriteGuard()
 
 
-#: The guard of the running command, and the files that it has read: one command at a time in a process.
-_guard = _NO_GUARD
+#: The guard of the running command, or of what this thread saves: threads may save results side by side.
+_guard: ContextVar[WriteGuard] = ContextVar("guard", default=_NO_GUARD)
+#: The files that the running command has read: one command at a time in a process.
 _read: dict[Path, None] = {}
 #: The words of the command line of the running command.
 _arguments: tuple[str, ...] = ()
@@ -75,17 +77,17 @@ SUMMARY = "summary.json"
 @contextmanager
 def guarded(guard: WriteGuard | None) -> Iterator[None]:
     """Check every file written in this block with ``guard``; None: without checks."""
-    global _guard
-    before, _guard = _guard, guard or _NO_GUARD
+    before = _guard.get()
+    _guard.set(guard or _NO_GUARD)
     try:
         yield
     finally:
-        _guard = before
+        _guard.set(before)
 
 
 def unguarded() -> bool:
     """True if no command guards the user's files: a call from Python."""
-    return _guard is _NO_GUARD
+    return _guard.get() is _NO_GUARD
 
 
 @contextmanager
@@ -141,12 +143,12 @@ def begin_writing(path: Path) -> None:
     ------
     InputError : the command may not write this file.
     """
-    _guard.before_writing(path)
+    _guard.get().before_writing(path)
 
 
 def end_writing(path: Path) -> None:
     """Report a file written in place as complete."""
-    _guard.after_writing(path)
+    _guard.get().after_writing(path)
 
 
 def as_path(path: str | Path, field: str) -> Path:
@@ -232,14 +234,14 @@ def atomic_path(path: str | Path) -> Iterator[Path]:
         raise InputError("is a folder; a file is wanted", file=path)
     temporary = _temporary(path)
     with _cannot_be_written(path, temporary):
-        _guard.before_writing(path)
+        _guard.get().before_writing(path)
         path.parent.mkdir(parents=True, exist_ok=True)
         try:
             yield temporary
             with interruption_delayed():
                 os.replace(temporary, path)
                 _note_written(path)
-                _guard.after_writing(path)
+                _guard.get().after_writing(path)
         finally:
             with interruption_delayed(), suppress(OSError):
                 temporary.unlink(missing_ok=True)
@@ -264,7 +266,7 @@ def atomic_folder(folder: str | Path) -> Iterator[Path]:
             yield temporary
             files = sorted(path for path in temporary.rglob("*") if path.is_file())
             for file in files:
-                _guard.before_writing(folder / file.relative_to(temporary))
+                _guard.get().before_writing(folder / file.relative_to(temporary))
             # All files or none: files of two runs together would belong to neither.
             with interruption_delayed():
                 for file in files:
@@ -276,11 +278,11 @@ def atomic_folder(folder: str | Path) -> Iterator[Path]:
 
 def _move(file: Path, target: Path) -> None:
     target.parent.mkdir(parents=True, exist_ok=True)
-    if target.suffix == ".json" and _guard.writes_summary(target, json.loads(file.read_text(encoding="utf-8"))):
+    if target.suffix == ".json" and _guard.get().writes_summary(target, json.loads(file.read_text(encoding="utf-8"))):
         return
     os.replace(file, target)
     _note_written(target)
-    _guard.after_writing(target)
+    _guard.get().after_writing(target)
 
 
 def jsonable(value: Any) -> Any:
@@ -299,7 +301,7 @@ def jsonable(value: Any) -> Any:
 def write_json(data: dict[str, Any], path: Path) -> Path:
     """Write JSON completely or not at all."""
     plain = jsonable(data)
-    if not _guard.writes_summary(Path(os.path.abspath(path)), plain):
+    if not _guard.get().writes_summary(Path(os.path.abspath(path)), plain):
         with atomic_path(path) as temporary:
             temporary.write_text(json.dumps(plain, indent=1) + "\n", encoding="utf-8")
     return path

@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -120,6 +121,10 @@ def explored(
         in real time. NotReducibleError : the tolerance was not reached.
     """
     NEEDS.check(study)
+    if tolerance is not None and not (isinstance(tolerance, Real) and tolerance > 0):
+        raise InputError(f"must be a positive number of kelvins, not {tolerance!r:.60}", field="tolerance")
+    if scheduler is not None and not hasattr(scheduler, "outcomes"):
+        raise InputError(f"must be Here, Local or Dask, not {scheduler!r:.60}", field="scheduler")
     choice = study.card.explore
     if not isinstance(vary, Mapping | None):
         example = "{'drive.speed': ('10 mph', '40 mph')}"

@@ -71,7 +71,10 @@ def cycle_places(pressed: Pressed, wanted: Iterable[str] = ()) -> tuple[CyclePla
     ------
     InputError : an entry is neither a place in the section nor a region.
     """
-    return tuple(_wanted(pressed, text) for text in wanted) or _usual(pressed)
+    places = () if isinstance(wanted, str) or not isinstance(wanted, Iterable) else tuple(wanted)
+    if (not places and wanted) or not all(isinstance(text, str) for text in places):
+        raise InputError(f"must be a list of places or regions, like ['tread'], not {wanted!r:.60}", field="at")
+    return tuple(_wanted(pressed, text) for text in places) or _usual(pressed)
 
 
 def _wanted(pressed: Pressed, text: str) -> CyclePlace:

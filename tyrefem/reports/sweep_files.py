@@ -139,7 +139,7 @@ def summarised(design: DesignData) -> dict[str, Any]:
         "asked": card.model_dump(exclude_none=True, by_alias=True),
         **({} if design.swept is None else {"sample": sample_summary(design.swept)}),
         **{part.name: part.to_dict() for part in design.parts},
-        "failures": design.failed,
+        "failures": design.failures,
         "versions": made_of["versions"] | {"SALib": importlib.metadata.version("SALib")},
         "words": text_lines(design),
     }

@@ -58,7 +58,11 @@ def write_variants(
     """
     from tyrefem.simulation.run import run
 
+    if variants is not None and (isinstance(variants, str) or not isinstance(variants, Iterable)):
+        raise InputError(f"must be a list of variants, like ['1', '2'], not {variants!r:.60}", field="variants")
     chosen = chosen_variants(design, [FRONT] if variants is None else map(str, variants))
+    if not chosen and variants is not None:
+        raise InputError("names no variant", field="variants")
     if not chosen:
         raise InputError("no variant is on the Pareto front: none is feasible", field="variant")
     assert design.swept is not None

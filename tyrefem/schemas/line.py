@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -48,5 +49,7 @@ def settings_text(patterns: Mapping[str, Iterable[str]], folder: str) -> str:
     lines = ["# Written by: tyrefem schema. Which schema a file has, for Taplo and the editors that use it.", ""]
     for kind, files in patterns.items():
         names = ", ".join(f'"{pattern}"' for pattern in files)
-        lines += ["[[rule]]", f"include = [{names}]", f'schema = {{ path = "{folder}/{kind}.json" }}', ""]
+        # A text of JSON is one of TOML.
+        path = json.dumps(f"{folder}/{kind}.json", ensure_ascii=False)
+        lines += ["[[rule]]", f"include = [{names}]", f"schema = {{ path = {path} }}", ""]
     return "\n".join(lines)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-import re
+import tomllib
 from pathlib import Path
 
 from tyrefem.schemas.answer_schema import answers_schema
@@ -23,8 +23,11 @@ def are_settings(text: str) -> bool:
     >>> are_settings(settings("schemas")), are_settings(settings("my/schemas") + "[formatting]\\n")
     (True, False)
     """
-    folder = re.search(r'path = "(.*)/[^/"]+\.json"', text)
-    return folder is not None and text == settings(folder[1])
+    try:
+        path = tomllib.loads(text)["rule"][0]["schema"]["path"]
+        return text == settings(str(path).rpartition("/")[0])
+    except (tomllib.TOMLDecodeError, LookupError, TypeError):
+        return False
 
 
 def settings(folder: str) -> str:

@@ -11,6 +11,7 @@ from tyrefem.brief import Brief
 from tyrefem.errors import InputError, InputWarning, nearest
 from tyrefem.inputs.study import StudyData
 from tyrefem.mechanics.cautions import warnings_of
+from tyrefem.output import as_path
 from tyrefem.requirements import Requirements
 from tyrefem.sweep.envelope import Envelope
 from tyrefem.sweep.optimum import Optimum, optimum
@@ -130,6 +131,16 @@ class DesignData(Brief):
         return {} if self.swept is None else self.swept.failed
 
     @property
+    def failures(self) -> dict[str, str]:
+        """Every run that failed -> reason: a variant of the sample by its name, others behind their answer's name."""
+        reasons = dict(self.failed)
+        for part in self.parts:
+            of_part = getattr(part, "failed", None)
+            if isinstance(of_part, Mapping):
+                reasons |= {f"{part.name}: {name}": str(reason) for name, reason in of_part.items()}
+        return reasons
+
+    @property
     def words(self) -> list[str]:
         """All answers in sentences."""
         return [line for part in self.parts for line in part.words]
@@ -235,8 +246,8 @@ def run_design_study(study: StudyData, vary: Mapping[str, Any] | None = None, **
         if name not in allowed:
             raise InputError(f"unknown option '{name}'{nearest(name, allowed)}", field="sweep")
     run = {name: options.pop(name) for name in known if name in options}
-    if isinstance(run.get("folder"), str):
-        run["folder"] = Path(run["folder"])
+    if run.get("folder") is not None:
+        run["folder"] = as_path(run["folder"], "folder")
     execution = Execution(**run)
     if options.get("case") is not None:
         study = study.case(options["case"])

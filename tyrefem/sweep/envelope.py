@@ -214,6 +214,12 @@ class Envelope(InSentences):
         return groups["tkph"].min().where(groups["speed_m_s"].count() == groups.size()).rename("tkph").reset_index()
 
     @property
+    def failed(self) -> dict[str, str]:
+        """Load and pressure whose search failed -> reason."""
+        rows = self.table.to_dict("records")
+        return {f"{row['load']} at {row['pressure']}": row["failure"] for row in rows if row["failure"]}
+
+    @property
     def words(self) -> list[str]:
         """The answer in sentences."""
         answer, end = self.card.answer, self.study.card.drive.end

@@ -211,6 +211,11 @@ class Optimum(InSentences):
         return len({json.dumps(variants[n], sort_keys=True, default=str) for n in self.swept.outcomes})
 
     @property
+    def failed(self) -> dict[str, str]:
+        """Variant of the search that failed -> reason."""
+        return {f"variant {name}": reason for name, reason in self.swept.failed.items()}
+
+    @property
     def where(self) -> str:
         """`changes` as text, with four digits; linked numbers by their name."""
         values = {} if self.best is None else self.swept.plan.settings(self.best)

@@ -16,6 +16,7 @@ class DesignPart(Protocol):
 
     Its pictures are registered for its class with `tyrefem.reports.sweep_figures.figures`; a class without pictures
     sets ``drawn = False``. An answer from a `Sweep` hands on its ``interrupted``: then no further question is answered.
+    An answer with runs of its own may have ``failed``, run -> reason: the command prints them and ends with 1.
     """
 
     name: str

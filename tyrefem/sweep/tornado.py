@@ -153,6 +153,11 @@ class Tornado(InSentences):
         """Why the sweep is incomplete; empty: it is complete."""
         return self.swept.interrupted
 
+    @property
+    def failed(self) -> dict[str, str]:
+        """Run that failed -> reason."""
+        return self.swept.failed
+
     def tolerance(self, number: str) -> str:
         """The tolerance of a number as text: a share, of a temperature kelvins."""
         return str(self.swept.plan.sampling["in_words"][number])

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TypedDict
 
 from tyrefem.errors import InputError
+from tyrefem.output import as_path
 from tyrefem.variants.schedulers import Here, Scheduler
 
 #: Called with (stage, finished, total).
@@ -70,7 +71,8 @@ class Execution:
 
     Raises
     ------
-    InputError : an unknown value of ``reduced``; a tolerance that is not positive.
+    InputError : an unknown value of ``reduced``; a tolerance that is not positive; what is no scheduler, folder or
+        settings.
 
     >>> Execution().given({"reduced": "never"}).reduced
     'never'
@@ -91,6 +93,12 @@ class Execution:
             raise InputError(f"must be a number of kelvins, not {self.tolerance!r}", field="tolerance")
         if not self.tolerance > 0:
             raise InputError(f"must be positive, not {self.tolerance:g} K", field="tolerance")
+        if self.scheduler is not None and not hasattr(self.scheduler, "outcomes"):
+            raise InputError(f"must be Here, Local or Dask, not {self.scheduler!r:.60}", field="scheduler")
+        if self.folder is not None:
+            as_path(self.folder, "folder")
+        if not isinstance(self.settings, SweepSettings):
+            raise InputError(f"must be SweepSettings, not {self.settings!r:.60}", field="settings")
 
     def given(self, options: ExecutionOptions) -> Execution:
         """The execution with some fields replaced."""

@@ -174,7 +174,7 @@ def write(mesh: Any, path: str | Path) -> Path:
     import meshio
 
     path = Path(path)
-    if path.suffix not in WRITTEN:
+    if path.suffix.lower() not in WRITTEN:
         raise InputError(f"names cannot be kept in a '{path.suffix}' file{nearest(path.suffix, WRITTEN)}", file=path)
     mesh = getattr(mesh, "mesh", mesh)
     cell = "triangle" if mesh.t.shape[0] == 3 else "quad"
@@ -193,7 +193,7 @@ def write(mesh: Any, path: str | Path) -> Path:
         marks[what][block][numbers] = 1
     data: dict[str, Any] = {":".join(what): values for what, values in marks.items()}
     field_data = {}
-    if path.suffix == ".msh":
+    if path.suffix.lower() == ".msh":
         tags = [np.zeros(mesh.t.shape[1], dtype=np.int32), np.zeros(len(facets), dtype=np.int32)]
         for tag, (what, (numbers, block)) in enumerate(members.items(), start=1):
             tags[block][numbers] = tag
@@ -203,7 +203,7 @@ def write(mesh: Any, path: str | Path) -> Path:
     with atomic_path(path) as temporary:
         try:
             with contextlib.redirect_stdout(io.StringIO()):
-                meshio.write(temporary, content, **WRITTEN[path.suffix])
+                meshio.write(temporary, content, **WRITTEN[path.suffix.lower()])
         except (Exception, SystemExit) as error:  # each format raises other errors
             raise InputError(f"cannot be written: {error}", file=path) from error
         _name_writer(temporary)
@@ -213,10 +213,10 @@ def write(mesh: Any, path: str | Path) -> Path:
 def _check_names(regions: Iterable[str], boundaries: Iterable[str], path: Path) -> None:
     """Raise `InputError` for names that meshio writes, but cannot read again."""
     for name in [*regions, *boundaries]:
-        if bad := [sign for sign in UNREADABLE.get(path.suffix, "") if sign in name]:
+        if bad := [sign for sign in UNREADABLE.get(path.suffix.lower(), "") if sign in name]:
             raise InputError(f"a '{path.suffix}' file cannot keep the name '{name}': it has a {bad[0]}", file=path)
     both = sorted(set(regions) & set(boundaries))
-    if both and path.suffix == ".msh":
+    if both and path.suffix.lower() == ".msh":
         raise InputError(
             f"'{both[0]}' names a region and a boundary, of which a '.msh' file keeps one; '.vtu' and '.vtk' keep both",
             file=path,
@@ -225,10 +225,10 @@ def _check_names(regions: Iterable[str], boundaries: Iterable[str], path: Path) 
 
 def _name_writer(path: Path) -> None:
     """Name the program that wrote the file, in a comment of the format."""
-    if path.suffix == ".vtk":
+    if path.suffix.lower() == ".vtk":
         path.write_bytes(path.read_bytes().replace(b"written by meshio", MARK + b", by meshio", 1))
         return
-    comment = b"$Comments\n%s\n$EndComments\n" if path.suffix == ".msh" else b"\n<!-- %s -->\n"
+    comment = b"$Comments\n%s\n$EndComments\n" if path.suffix.lower() == ".msh" else b"\n<!-- %s -->\n"
     with path.open("ab") as stream:
         stream.write(comment % MARK)
 

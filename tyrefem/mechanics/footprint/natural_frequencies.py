@@ -192,8 +192,8 @@ def natural_frequencies(
     orders = tuple(dict.fromkeys(harmonics)) if isinstance(harmonics, Iterable) else ()
     if not orders or not all(isinstance(n, Integral) and 0 <= n <= HIGHEST for n in orders):
         raise InputError(f"must be whole numbers from 0 to {HIGHEST}, not {harmonics!r:.60}", field="harmonics")
-    if not (isinstance(count, Integral) and 1 <= count <= MOST):
-        raise InputError(f"must be a whole number from 1 to {MOST}, not {count}", field="count")
+    if isinstance(count, bool) or not (isinstance(count, Integral) and 1 <= count <= MOST):
+        raise InputError(f"must be a whole number from 1 to {MOST}, not {count!r:.60}", field="count")
     pressure = study.card.drive.phases[0].pressure.start if pressure is None else pressure
     if not pressure > 0:
         raise InputError(f"must be more than 0 Pa, not {pressure:g} Pa", field="pressure")

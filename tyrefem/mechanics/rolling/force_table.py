@@ -6,6 +6,7 @@ import functools
 import itertools
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from numbers import Integral
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,6 +14,7 @@ import numpy as np
 from tyrefem.brief import Brief
 from tyrefem.errors import InputError
 from tyrefem.materials.cord_layers import masses
+from tyrefem.mechanics.footprint.contact import LADDER
 from tyrefem.mechanics.rolling.roll import HARMONICS, driven, row, swept
 from tyrefem.mechanics.rolling.rolled import RolledTyre
 from tyrefem.mechanics.rolling.rolling_motion import RollingMotion
@@ -153,6 +155,8 @@ def tyre_forces(
     for name in ("load", "deflection", "camber"):
         if name in wheel:
             raise InputError("is given by the table of forces", field=name)
+    if not isinstance(harmonics, Integral) or harmonics < LADDER[0]:
+        raise InputError(f"must be a whole number of at least {LADDER[0]}, not {harmonics!r:.60}", field="harmonics")
     phase = study.card.drive.phases[0]
     if loads is None:
         if phase.load is None:
@@ -163,6 +167,8 @@ def tyre_forces(
             raise InputError(f"must be more than 0 N, not {load:g} N", field="loads")
     if len(set(loads)) < 2:
         raise InputError("give at least two different loads: the Magic Formula goes over load", field="loads")
+    if not len(slip_angles) and not len(slips):
+        raise InputError("give at least one slip angle or one slip: the forces are those of slip", field="slip_angles")
     nominal = float(np.mean(loads))
     if phase.load is not None and min(loads) <= phase.load.start <= max(loads):
         nominal = phase.load.start
