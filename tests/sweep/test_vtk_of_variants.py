@@ -34,8 +34,6 @@ def test_a_chosen_variant_is_its_full_run(design: Design, tmp_path: Path) -> Non
     assert result.study.data["drive"]["speed"] == "20 mph"
 
 
-
-
 def test_by_default_those_on_the_front(design: Design, tmp_path: Path) -> None:
     front = set(design.pareto["variant"])
     assert set(design.to_vtk(tmp_path)) == front
