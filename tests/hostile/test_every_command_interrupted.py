@@ -8,17 +8,18 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from command_processes import COMPUTING, NEW, after_start, at_work, ended, started, waited, writing
+from command_processes import ALONE, COMPUTING, NEW, after_start, at_work, ended, started, waited, writing
 from content import content, half_written, one_line, unchanged
 from every_command import Command
 
 #: All commands start alike, so three are met there, in an interpreter that has imported nothing yet;
-#: tests/cli/test_ctrl_c.py meets single imports.
+#: tests/cli/test_ctrl_c.py meets single imports. All compute by themselves, and these write by themselves.
+MEETING = {after_start: NEW, at_work: {each.words for each in COMPUTING}, writing: ALONE}
 MOMENTS = [
     pytest.param(command, moment, id=f"{command.name}-{moment.__name__}")
     for command in COMPUTING
-    for moment in (after_start, at_work, writing)
-    if moment is not after_start or command.words in NEW
+    for moment, met in MEETING.items()
+    if command.words in met
 ]
 
 

@@ -1,4 +1,4 @@
-"""Every command, found by itself: its answer in JSON, and folders and files in which something of the user's could be lost."""
+"""Every command, found by itself: its answer in JSON, and folders in which files of the user could be lost."""
 
 from __future__ import annotations
 

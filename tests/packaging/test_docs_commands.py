@@ -30,8 +30,8 @@ COARSE = {
     "nasa-22x5.5": [*LINEAR, "--set", "drive.duration=60 s"],
     "nasa-": LINEAR,
     "example-": LINEAR,
-    "passenger-": ["--set", "mesh.size=18 mm", "--set", "mechanics.motion=linear"],
-    "studies/passenger-": ["--set", "mesh.size=18 mm", "--set", "mechanics.motion=linear"],
+    "passenger-": ["--set", "mesh.size=22 mm", "--set", "mechanics.motion=linear"],
+    "studies/passenger-": ["--set", "mesh.size=22 mm", "--set", "mechanics.motion=linear"],
 }
 #: Commands that take a study and ``--set``.
 OF_STUDY = {"run", "press", "modes", "strain", "compare", "wear", "life", "sweep", "explore", "export"}
