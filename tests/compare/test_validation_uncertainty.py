@@ -46,7 +46,10 @@ def test_red_noise_is_worth_less(phi):
 
 
 def test_a_drift_is_worth_one_reading_and_a_constant_all():
-    assert effective_number(np.linspace(0.0, 1.0, 1000)) == pytest.approx(1.0, abs=2.0)
+    # Of n readings in a line, neighbours correlate by 1 - 3/n.
+    assert effective_number(np.linspace(0.0, 1.0, 1000)) == pytest.approx(1.5, abs=0.01)
+    # Two readings correlate by -1/2, but no series is worth more than its readings.
+    assert effective_number(np.array([0.0, 1.0])) == 2.0
     assert effective_number(np.full(10, 3.3)) == 10.0
     assert effective_number(np.array([1.0])) == 1.0
 
@@ -67,6 +70,7 @@ def test_by_hand(study):
     entry = whole(comparison)
     assert entry["bias_K"] == pytest.approx(4.0)
     assert entry["rms_K"] == pytest.approx(math.sqrt(17.0))
+    assert comparison.by_sensor.to_dict() == pytest.approx({"crown": math.sqrt(17.0)})
     assert entry["n_effective"] == pytest.approx(4.0)
     assert entry["u_num_K"] == pytest.approx(0.5)
     assert entry["u_data_K"] == pytest.approx(math.sqrt(0.65))

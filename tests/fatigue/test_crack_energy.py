@@ -65,10 +65,26 @@ def test_a_narrow_hill_beside_a_broad_one_is_found() -> None:
 
     def damage(normals: Array) -> Array:
         near, far = (np.minimum(np.abs((normals * hill).sum(axis=-1)), 1.0) for hill in (narrow, broad))
-        return np.asarray(np.maximum(np.exp(-((np.arccos(near) / np.radians(8.0)) ** 2)), 0.6 * far**2))
+        return np.asarray(np.maximum(np.exp(-((np.arccos(near) / np.radians(5.0)) ** 2)), 0.6 * far**20))
 
     _, largest = critical_planes(damage, len(narrow))
     assert largest.min() > 0.99
+
+
+def test_a_cycle_that_does_not_relax_has_the_energies_of_its_ends() -> None:
+    """Pulled to 1.3, then between 1.3 and 1.1: the pull alone opens the plane, and has gained W(1.3) - W(1.1)."""
+    s = np.concatenate([np.linspace(1, 1.3, 400), np.linspace(1.3, 1.1, 300)[1:], np.linspace(1.1, 1.3, 300)[1:]])
+    stretches, stress = np.stack([s, s**-0.5, s**-0.5], axis=1), np.zeros((len(s), 3, 3))
+    stress[:, 0, 0] = G * (s**2 - 1 / s)
+    strain = np.eye(3) * np.log(stretches)[:, None]
+    energies, weights = CrackingEnergy(six(stress)[None], six(strain)[None], before=399), products(np.eye(3)[:1])
+    on = energies.on(weights)
+    ends = [energy_of(np.array([[x, x**-0.5, x**-0.5]])) for x in (1.3, 1.1)]
+    assert [on.peak[0, 0], on.valley[0, 0]] == pytest.approx(ends, rel=1e-4)
+    assert [on.opening[0, 0], on.stretch[0, 0]] == pytest.approx([1.0, 1.3], rel=1e-6)
+    # The search over planes sees the same, in single precision.
+    for rough, exact in zip(energies.extremes(weights), (on.peak, on.valley, on.stretch), strict=True):
+        np.testing.assert_allclose(rough, exact, rtol=1e-4)
 
 
 def test_uniaxial_compression_leaves_shear_only() -> None:

@@ -43,6 +43,8 @@ def test_belt_edge_shear_is_found_at_the_belt_edge(cycle: StrainHarmonics) -> No
     members = cycle.elements.mesh.subdomains["belt"]
     assert shear.place[1] > 0.9 * cycle.elements.points[1][members].max()
     assert 0.02 < shear.range < 1.0
+    history = cycle.at(*shear.place, np.linspace(-np.pi, np.pi, 180))
+    assert np.ptp(history[3:], axis=-1).max() == pytest.approx(shear.range, rel=1e-12)
     with pytest.raises(InputError, match="did you mean 'belt'"):
         cycle.belt_edge_shear("belts")
 
@@ -104,7 +106,18 @@ def test_heat_is_rolling_resistance_times_speed(cycle: StrainHarmonics) -> None:
     assert power == pytest.approx(revolution_loss.rolling_resistance * 15.0, rel=1e-12)
     assert sum(revolution_loss.by_region.values()) == pytest.approx(revolution_loss.energy, rel=1e-12)
     assert revolution_loss.by_harmonic.sum() == pytest.approx(revolution_loss.total(revolution_loss.density), rel=1e-12)
+    assert revolution_loss.coefficient * cycle.footprint.load * 15.0 == pytest.approx(power, rel=1e-12)
     assert 1e-4 < revolution_loss.coefficient < 0.1
+
+
+def test_stored_energy_is_the_mean_over_the_wheel(cycle: StrainHarmonics) -> None:
+    """1/2 e : C' : e, mean over the angle, is what all harmonics store together."""
+    revolution_loss = RevolutionLoss(cycle, {}, 20.0)
+    storage, mean = cycle.footprint.pressing.state.storage, np.zeros(cycle.elements.radii.shape)
+    for t in np.arange(128) * 2 * np.pi / 128:
+        e = cycle.strain(np.array([t]))[..., 0]
+        mean += np.einsum("iep,ijep,jep->ep", e, storage, e) / 2 / 128
+    assert revolution_loss.stored_by_harmonic.sum() == pytest.approx(revolution_loss.total(mean), rel=1e-9)
 
 
 def test_loss_follows_its_tangent(cycle: StrainHarmonics) -> None:
@@ -126,6 +139,12 @@ def test_one_cycle_convention_is_half_of_the_sinusoid(cycle: StrainHarmonics) ->
     revolution_loss = RevolutionLoss(cycle, dict.fromkeys(REGIONS, OfTemperature(0.1)), 20.0)
     nasa, sinusoid = (revolution_loss.total(revolution_loss.one_cycle_density(name)) for name in ("nasa", "sinusoid"))
     assert sinusoid == pytest.approx(2 * nasa)
+    # pi U tan d at a point: U is the largest energy of the strain less that opposite the footprint.
+    e, p = cycle.nearest(0.315, 0.03)
+    change = cycle.at(0.315, 0.03, np.linspace(0, np.pi, 180))
+    change = change - change[:, -1:]
+    energy = np.einsum("it,ij,jt->t", change, cycle.footprint.pressing.state.storage[:, :, e, p], change) / 2
+    assert revolution_loss.one_cycle_density()[e, p] == pytest.approx(np.pi * 0.1 * energy.max(), rel=1e-9)
     assert 0.2 < nasa / revolution_loss.energy < 5
     with pytest.raises(InputError, match="did you mean 'nasa'"):
         revolution_loss.one_cycle_density("nsa")

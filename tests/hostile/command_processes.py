@@ -19,6 +19,11 @@ from forked_commands import exit_code, forked
 #: Commands that answer at once, by their first word; the others compute something.
 AT_ONCE = {"check", "list", "new", "road", "schema", "show", "slide"}
 COMPUTING = [each for each in commands() if each.words.split()[0] not in AT_ONCE]
+#: Commands that keep finished work for a later attempt, or write by themselves: folders of files, one file, tables of
+#: a rig. The others compute, and then put whole files in place: `test_files_of_every_command.py` sees each of them.
+ALONE = {
+    "blind", "compare", "diagnose", "export", "isolability", "plan", "rig simulate", "run", "strain", "sweep",
+}  # fmt: skip
 #: Commands whose interpreter is always a new one, which imports while it works.
 NEW = ("run", "sweep", "rig simulate")
 
@@ -32,14 +37,14 @@ class Process:
     err: Path
 
 
-def started(command: Command, out: Path, *, largest_file: int = 0, new: bool = False) -> Process:
-    """The command as a process: ``new`` or one of `NEW`: of a new interpreter; else forked (`forked_commands.py`).
+def started(command: Command, out: Path, *, largest_file: int = 0) -> Process:
+    """The command as a process: one of `NEW` of a new interpreter, the others forked (`forked_commands.py`).
 
     ``largest_file`` : bytes that no file may exceed.
     """
     number, name = tempfile.mkstemp(prefix="stderr-")
     os.close(number)
-    if not (new or command.words in NEW):
+    if command.words not in NEW:
         pid = forked(command.line(out), os.getcwd(), name, largest_file=largest_file)
         codes: list[int] = []
 

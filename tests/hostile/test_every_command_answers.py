@@ -8,62 +8,26 @@ from pathlib import Path
 import pytest
 from documented_keys import checked
 from every_command import Command, commands
+from json_answers import answered
 
 import tyrefem as tf
 from tyrefem.cli import main
 from tyrefem.contracts import template
-from tyrefem.output.folder import checksum
 from tyrefem.schemas.answers import ANSWERS
 
 #: Commands that take seconds; the others are tried here too, with ``--json`` alone.
 QUICK = ("check", "list", "new", "road film", "run", "show", "slide rise", "sweep")
 
 
-#: Commands whose numbers come without time steps.
-WITHOUT_STEPS = ("press", "roll", "forces", "modes", "wear")
-#: Commands with random numbers, and their seeds here.
-SEEDS = {"blind": 1, "plan": 0, "sweep": 1, "rig layers": 1}
+#: Commands without results in files; those of the others: `test_files_of_every_command.py`.
+PRINTING = [each for each in commands() if "out" not in each.options]
 
 
-def tells_what_made_it(place: Path, command: Command, line: list[str]) -> None:
-    """The folder names command, versions, inputs, mesh, tolerance and seed; its study runs again from there."""
-    told = json.loads((place / "summary.json").read_text(encoding="utf-8"))
-    assert told["command"] == command.words
-    assert told["arguments"] == line
-    libraries = set() if command.words == "schema" else {"python", "numpy", "scipy", "scikit-fem"}
-    assert {"tyrefem", *libraries} <= set(told["versions"])
-    assert all(checksum(Path(file)) == kept for file, kept in told["files_read"].items())
-    read = {Path(file).name for file in told["files_read"]}
-    assert read >= {Path(word).name for word in command.arguments if word.endswith(".toml")}
-    assert told.get("random_seed") == SEEDS.get(command.words)
-    if not command.of_study:
-        return
-    assert told["input"]["mesh"]["size"] == "15 mm"
-    assert (told["mesh"]["mesher"], told["mesh"]["size_m"]) == ("mapped", 0.015)
-    steps = told.get("tolerance_K", told.get("numerics", {}).get("tolerance_K"))
-    assert (steps is None) == (command.words in WITHOUT_STEPS), steps
-    assert "study.toml" in told["files"]
-    study = tf.study(str(place / "study.toml"))
-    assert study.card.mesh.size == 0.015
-    assert study.section.regions == tf.study("study.toml").section.regions
-    loaded = tf.load(place)
-    assert loaded.study is not None
-
-
-@pytest.mark.parametrize("command", commands(), ids=lambda command: command.name)
+@pytest.mark.parametrize("command", PRINTING, ids=lambda command: command.name)
 def test_json_is_one_object_with_the_documented_keys(
     command: Command, here: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    assert {"as_json", "quiet"} <= command.options
-    place = command.out(here / "new")
-    line = command.line(place, "--json")
-    code = main(line)
-    out, err = capfd.readouterr()
-    assert code == 0, err
-    checked(command.words, out)
-    assert all(line.startswith("tyrefem: ") for line in err.splitlines())
-    if command.writes_folder:
-        tells_what_made_it(place, command, line)
+    answered(command, command.line(None, "--json"), capfd)
 
 
 def test_the_study_of_a_folder_has_the_changes_and_stays_the_user_s(here: Path) -> None:

@@ -8,18 +8,26 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from command_processes import COMPUTING, after_start, at_work, ended, started, waited, writing
+from command_processes import ALONE, COMPUTING, NEW, after_start, at_work, ended, started, waited, writing
 from content import content, half_written, one_line, unchanged
 from every_command import Command
 
+#: All commands start alike, so three are met there, in an interpreter that has imported nothing yet;
+#: tests/cli/test_ctrl_c.py meets single imports. All compute by themselves, and these write by themselves.
+MEETING = {after_start: NEW, at_work: {each.words for each in COMPUTING}, writing: ALONE}
+MOMENTS = [
+    pytest.param(command, moment, id=f"{command.name}-{moment.__name__}")
+    for command in COMPUTING
+    for moment, met in MEETING.items()
+    if command.words in met
+]
 
-@pytest.mark.parametrize("moment", [after_start, at_work, writing], ids=lambda moment: moment.__name__)
-@pytest.mark.parametrize("command", COMPUTING, ids=lambda command: command.name)
+
+@pytest.mark.parametrize(("command", "moment"), MOMENTS)
 def test_interrupted(command: Command, moment: Callable[[Path], bool], here: Path) -> None:
     before = content(here)
     out = command.out(here / "new")
-    # At its start it imports: in an interpreter that has done so there is no such moment.
-    running = started(command, out, new=moment is after_start)
+    running = started(command, out)
     waited(running, moment, out)
     if running.poll() is None:
         os.killpg(running.pid, signal.SIGINT)

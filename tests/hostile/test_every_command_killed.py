@@ -1,4 +1,4 @@
-"""Every command that computes, killed, and on a full disk."""
+"""Commands that compute, killed, and on a full disk: all that keep finished work or write by themselves."""
 
 from __future__ import annotations
 
@@ -8,12 +8,18 @@ import signal
 from pathlib import Path
 
 import pytest
-from command_processes import COMPUTING, ended, started, waited, writing
+from command_processes import ALONE, COMPUTING, ended, started, waited, writing
 from content import content, half_written, one_line, unchanged
 from every_command import Command
 
+KILLED = [each for each in COMPUTING if each.words in ALONE]
 
-@pytest.mark.parametrize("command", COMPUTING, ids=lambda command: command.name)
+
+def test_they_are_commands() -> None:
+    assert {each.words for each in KILLED} == ALONE
+
+
+@pytest.mark.parametrize("command", KILLED, ids=lambda command: command.name)
 def test_killed_and_again(command: Command, here: Path) -> None:
     before = content(here)
     out = command.out(here / "new")
@@ -28,7 +34,7 @@ def test_killed_and_again(command: Command, here: Path) -> None:
     assert half_written(here) == []
 
 
-@pytest.mark.parametrize("command", COMPUTING, ids=lambda command: command.name)
+@pytest.mark.parametrize("command", KILLED, ids=lambda command: command.name)
 def test_full_disk(command: Command, here: Path) -> None:
     before = content(here)
     out = command.out(here / "new")

@@ -31,22 +31,24 @@ ODD = {
     "nothing-held-out": small.study(measured=small.MEASURED.replace("true", "false")),
     "everything-held-out": small.study(measured=small.MEASURED.replace("false", "true")),
     "several-phases": small.study(drive=PHASES, measured=""),
+    "no-sensors-no-table": small.study(sensors="", measured=small.MEASURED.replace("false", "true")),
 }
-#: Commands that ask about measured runs. To the others, studies that differ in these are the same study.
+#: Commands that ask about measured runs.
 OF_RUNS = {"blind", "compare", "diagnose", "explore", "isolability", "plan"}
-SAME = {"no-measured-runs", "nothing-held-out"}
+#: The others answer without sensors and without the table of the runs: studies that lack less tell nothing more.
+OF_OTHERS = {"campaign", "several-phases", "no-sensors-no-table"}
 QUESTIONS = [
     pytest.param(command, odd, id=f"{command.name}-{odd}")
     for command in commands()
     for odd in ODD
-    if command.of_study and (command.words in OF_RUNS or odd not in SAME)
+    if command.of_study and (odd != "no-sensors-no-table" if command.words in OF_RUNS else odd in OF_OTHERS)
 ]
 
 
 @pytest.mark.parametrize(("command", "odd"), QUESTIONS)
 def test_an_answer_or_one_error(command: Command, odd: str, here: Path, capfd: pytest.CaptureFixture[str]) -> None:
     (here / "study.toml").write_text(ODD[odd])
-    without_table = odd == "everything-held-out" and command.words not in OF_RUNS
+    without_table = odd == "no-sensors-no-table"
     if without_table:
         (here / "measured.csv").unlink()
     (here / "cases.csv").write_text("name,drive.speed [mph]\nslow,10\nfast,20\n")

@@ -83,25 +83,21 @@ def deviations(
     return away(growth), tuple(float(value) for value in growth)
 
 
+# Of every kind of tyre the narrow and the wide, the high and the low.
 @pytest.mark.parametrize(
     ("size", "mesh_size"),
     [
         ("205/60R15", 9e-3),
         ("255/40R17", 9e-3),
         ("22x5.5 8PR", 9e-3),
-        ("22x5.5 12PR", 10e-3),
         ("LT245/75R16", 10e-3),
         ("22x5.5R12 8PR", 8e-3),
-        ("27x7.75R15", 10e-3),
         ("295/80R22.5", 14e-3),
-        ("385/65R22.5", 16e-3),
         ("295/60R22.5", 16e-3),
         ("445/65R22.5", 16e-3),
-        ("32x8.8R16", 14e-3),
         ("46x17R20", 20e-3),
         ("1400x530R23", 20e-3),
         ("H44.5x16.5-21", 20e-3),
-        ("49x19-20 32PR", 20e-3),
         ("56x16 38PR", 14e-3),
     ],
 )

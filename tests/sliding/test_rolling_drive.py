@@ -67,8 +67,8 @@ def test_the_footprint_in_the_summary_is_that_of_the_rolling_tyre():
     assert (written["harmonics"], written["error"]) == (wanted["harmonics"], pytest.approx(wanted["error"], rel=1e-6))
 
 
-@pytest.mark.parametrize("rolling", [False, True])
-@pytest.mark.parametrize("motion", ["linear", "large"])
+# In large motion without inertia and loss: below, with the friction of that drive.
+@pytest.mark.parametrize(("motion", "rolling"), [("linear", False), ("linear", True), ("large", True)])
 def test_hysteresis_is_that_of_roll(motion, rolling):
     """The heat source of the conduction at the initial temperature is the loss of the strain cycle that `roll` has."""
     of_motion = {"drive.load": "2 kN"} if motion == "large" else {}
@@ -187,6 +187,7 @@ def test_on_the_footprint_in_large_motion_friction_is_that_of_roll_and_turns_are
     rolled = left.study.roll(slip_angle=math.radians(3), motion="large")
     friction = left.tyre.schedule.cycles[0][0].friction
     assert friction.work.sum() * left.tyre.motion(60.0).speed == pytest.approx(rolled.state.friction_power, rel=1e-6)
+    assert left.cold_power(10.0) == pytest.approx(rolled.hysteresis, rel=1e-9)
     assert left.generated(-1)[0] == pytest.approx(right.generated(-1)[0], rel=5e-3)
     assert left.heat_budget.imbalance < 1e-9
 

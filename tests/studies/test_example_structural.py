@@ -49,7 +49,7 @@ def test_the_hot_road_is_a_part_of_the_cause() -> None:
     # The strain energy is what decides; of the other discrepancies the middle size is tried.
     settings = DiagnosisSettings(
         **coarse, heat_widths=(3.0,), discrepancy_sizes=(1.0,), largest=1, looks=1, first_steps=2, more_steps=2,
-        most_continuations=1, beside_sets=1, beside_steps=2, odd_run_share=0.0,
+        singles=2, most_sets=3, most_continuations=1, beside_sets=1, beside_steps=1, odd_run_share=0.0,
     )  # fmt: skip
     study = tf.study("example-structural")
     first, other_load, _, held_out = study.data["measured"]

@@ -13,17 +13,21 @@ from tyrefem import library
 SHIPPED = sorted(library.names("study"))
 STEADY = [name for name in SHIPPED if len(tf.study(name).card.drive.phases) == 1]
 ROLLING = "nasa-22x5.5-8pr"
-#: Mesh of a tyre with mechanics by finite elements, over that of its study.
-COARSER = 1.8
+#: Mesh of a tyre with mechanics by finite elements: over that of its study, and at least, m.
+COARSER, COARSE = 1.8, 14e-3
 
 
 @functools.cache
 def run(name, *changes):
-    """A shipped study; footprints by the quick look, coarse: energy balances in any motion and mesh."""
+    """A shipped study; footprints by the quick look, coarse: energy balances in any motion, moduli and mesh."""
     study = tf.study(name)
     quick = {}
     if study.card.mechanics.strain == "fem":
-        quick = {"mechanics.motion": "linear", "mesh.size": f"{COARSER * study.card.mesh.size:g} m"}
+        quick = {
+            "mechanics.motion": "linear",
+            "mechanics.moduli": "card",
+            "mesh.size": f"{max(COARSER * study.card.mesh.size, COARSE):g} m",
+        }
     return study.replace({**quick, **dict(changes)}).run()
 
 

@@ -63,6 +63,8 @@ def test_transverse_grooves_bear_no_friction() -> None:
     """The same power on less rubber wears deeper, and the same volume (exponent 1)."""
     solid = rings()
     cut = replace(solid, rubber=0.8)
+    # The mean depth, over the area of the rubber, is the volume.
+    assert cut.mean * 0.8 * cut.areas.sum() == pytest.approx(cut.volume_per_km, rel=1e-12)
     np.testing.assert_allclose(cut.depth_per_km, solid.depth_per_km / 0.8, rtol=1e-12)
     assert cut.volume_per_km == pytest.approx(solid.volume_per_km, rel=1e-12)
 
@@ -70,7 +72,13 @@ def test_transverse_grooves_bear_no_friction() -> None:
 def test_the_sections_pattern_counts_in_state_and_drive() -> None:
     pattern = {"void": 0.1, "block_length": "20 mm", "source": "test"}
     study = tf.study("nasa-22x5.5-8pr", {**DRIVE, "drive.duration": "10 s", "section.pattern": pattern})
-    assert [study.roll(slip_angle=0.01).wear().rubber, study.wear().rubber] == pytest.approx([0.9, 0.9])
+    full, half = (study.replace({"mesh.section": name}).roll(slip_angle=0.01).wear() for name in ("full", "half"))
+    assert [full.rubber, study.wear().rubber] == pytest.approx([0.9, 0.9])
+    # In a turn to the left each side has its own friction, of a half section, too.
+    left, right = ([float(each.power[side * each.places[1] > 0].sum()) for each in (full, half)] for side in (1, -1))
+    assert left[1] == pytest.approx(left[0], rel=1e-3)
+    assert right[1] == pytest.approx(right[0], rel=1e-3)
+    assert abs(left[0] / right[0] - 1) > 0.01
 
 
 DRIVE = {
@@ -213,8 +221,8 @@ def test_a_tread_that_is_worn_through_is_refused() -> None:
         worn_section(study, wear, 1e6)
     assert caught.value.field == "distance"
     most = float(caught.value.message.split(": ")[1].split(" km")[0].replace(",", ""))
-    worn_section(study, wear, most - 1)
-    assert LEFT == 0.5e-3
+    last = section_of((worn_section(study, wear, most - 1), Path("worn.toml"), "worn"))
+    assert last.layers[-1].thickness(np.linspace(0.0, 0.0775, 400)).min() == pytest.approx(0.5e-3, abs=1e-4)
 
 
 @pytest.mark.fast
