@@ -161,6 +161,23 @@ def test_a_killed_command_leaves_a_folder_that_is_used_again(tmp_path: Path) -> 
     assert files(tmp_path) == {"summary.json", "readings.csv"}
 
 
+def test_ctrl_c_within_the_writing_itself_leaves_no_half_file(tmp_path: Path) -> None:
+    """A signal may come between making a temporary folder and the block that removes it."""
+
+    def interrupted(place: Path) -> None:
+        write(place, "pictures/a.png")
+        (place / "pictures" / ".tyrefem-01234567.png").write_text("half")
+        (place / ".tyrefem-89abcdef").mkdir()
+        raise KeyboardInterrupt
+
+    with (
+        pytest.raises(KeyboardInterrupt),
+        results_folder(tmp_path / "out", "run", NAMES, origin=None) as place,
+    ):
+        interrupted(place)
+    assert not list(tmp_path.rglob(".tyrefem-*"))
+
+
 def test_finished_work_stays_for_another_try(tmp_path: Path) -> None:
     def attempt(name: str) -> None:
         with results_folder(tmp_path, "blind", ("blind.json",), origin=None, keeps=["cases/*.json"]) as place:

@@ -101,6 +101,8 @@ def results_folder(
                         guard.write_origin()
                     with suppress(OSError, InputError):
                         guard.restore()
+                    with suppress(OSError):
+                        guard.remove_half_written()
                 raise
     finally:
         with interruption_delayed():
@@ -166,11 +168,15 @@ class ResultsFolder(WriteGuard):
         self._being_written: list[str] = []
         self._read: dict[str, str] = {}
         self._summary: dict[str, Any] = {}
+        self.remove_half_written()
+        #: Unchanged files of an earlier run of this tool, with their checksums.
+        self._listed = self._listed_before()
+
+    def remove_half_written(self) -> None:
+        """Remove incomplete files: of a killed command, or of this one where Ctrl-C met the writing itself."""
         for parent in {Path(name).parent.as_posix() for name in self.names}:
             for place in self.folder.glob(parent) if parent != "." else [self.folder]:
                 remove_temporary(place)
-        #: Unchanged files of an earlier run of this tool, with their checksums.
-        self._listed = self._listed_before()
 
     # -- before any computing ----------------------------------------------------------------------------------------
 
