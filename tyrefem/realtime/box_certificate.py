@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -11,6 +12,11 @@ from tyrefem.brief import Brief
 from tyrefem.realtime.box_runs import FullHistory
 from tyrefem.realtime.setting_solution import Solution
 from tyrefem.reduced.model import ReducedModel
+
+#: Outputs and answers that are powers, pressures or forces.
+_OTHERS = re.compile(
+    r"(generated|lost): .*|generated|stored|lost and stored|gas_pressure(_Pa)?|rolling_resistance(_N|_coefficient)?"
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,10 +60,10 @@ def certified(
 def is_temperature(name: str) -> bool:
     """Is an output or answer a temperature?
 
-    >>> is_temperature("crown-inner_degC"), is_temperature("lost: rim")
-    (True, False)
+    >>> [is_temperature(name) for name in ("crown-inner_degC", "lost-1", "lost: rim", "rolling_resistance_N")]
+    [True, True, False, False]
     """
-    return not name.startswith(("generated", "lost", "stored", "rolling_resistance", "gas_pressure"))
+    return _OTHERS.fullmatch(name) is None
 
 
 def field_difference(model: ReducedModel, solution: Solution, full: FullHistory) -> float:
