@@ -64,8 +64,7 @@ def find(kind: str, name: str, near: Path | None = None) -> Path:
     InputError : no such path or name; the message has the nearest name.
     """
     path = _path(name)
-    looks_like_path = path.suffix.lower() == ".toml" or os.sep in name or "/" in name or name in (".", "..")
-    if looks_like_path:
+    if _looks_like_path(name):
         options = [path] if path.is_absolute() or near is None else [near / path, path]
         for option in options:
             if kind in FILES and os.path.isdir(option):
@@ -83,6 +82,10 @@ def find(kind: str, name: str, near: Path | None = None) -> Path:
         return path / FILES[kind]
     _refuse_folder(kind, [*(root / FOLDERS[kind] / name for root in roots(near)), path])
     raise InputError(f"no {kind} named '{name}'{nearest(name, names(kind, near))}")
+
+
+def _looks_like_path(name: str) -> bool:
+    return _path(name).suffix.lower() == ".toml" or os.sep in name or "/" in name or name in (".", "..")
 
 
 def _refuse_folder(kind: str, folders: list[Path]) -> None:
@@ -161,12 +164,28 @@ def over(kind: str, reference: object, present: object, data: Mapping[str, Any])
     return merged(data, changes) if card == other and not laid else None
 
 
-def located(kind: str, reference: Any, near: Path | None = None) -> Any:
-    """The reference for use in another folder: a card that is not found by name there gets its full path."""
+def located(kind: str, reference: Any, near: Path | None = None, folder: Path | None = None) -> Any:
+    """The reference for use in another folder: a card that is not found by name there gets its full path.
+
+    ``near``: folder of the reference. ``folder``: the other folder; None: any without cards near it.
+    """
     if of_size(kind, reference, near) or (isinstance(reference, Mapping) and "base" not in reference):
         return reference
     name = reference["base"] if isinstance(reference, Mapping) else reference
     path = find(kind, name, near).resolve()
-    if not path.is_relative_to(shipped().resolve()):
+    if not stays_named(kind, name, path, folder):
         name = str(path)
     return {**reference, "base": name} if isinstance(reference, Mapping) else name
+
+
+def stays_named(kind: str, name: str, path: Path, folder: Path | None = None) -> bool:
+    """Whether a reference may keep its name in a folder: the name of a shipped card, which no other card hides there.
+
+    ``path``: the card's file, resolved.
+    """
+    if _looks_like_path(name) or not path.is_relative_to(shipped().resolve()):
+        return False
+    try:
+        return find(kind, name, folder).resolve() == path
+    except InputError:
+        return False

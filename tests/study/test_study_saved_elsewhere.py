@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 from pathlib import Path
 
+import pytest
+
 import tyrefem as tf
 from tyrefem import library
+from tyrefem.variants.task import bundle
 
 
 def own_library(root: Path) -> Path:
@@ -29,3 +33,62 @@ def test_saved_beside_itself_keeps_relative_names(tmp_path: Path) -> None:
     study = tf.study(own_library(tmp_path))
     again = tf.study(study.save(study.folder / "again.toml"))
     assert again.data == study.data
+
+
+def hiding_card(folder: Path, name: str, loss_tangent: str) -> Path:
+    """A user's card in a folder, with the name of a shipped one and another tan delta."""
+    text = library.find("material", name).read_text(encoding="utf-8")
+    card = folder / "materials" / f"{name}.toml"
+    card.parent.mkdir(parents=True)
+    card.write_text(re.sub(r"(\[loss_tangent\][^[]*?value = )[\d.]+", rf"\g<1>{loss_tangent}", text), encoding="utf-8")
+    return card
+
+
+def test_saved_shipped_study_keeps_its_cards_where_others_hide_them(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    study = tf.study("nasa-22x5.5-8pr")
+    hiding_card(tmp_path, "nasa-tread", "0.6")
+    monkeypatch.chdir(tmp_path)
+    saved = tf.study(study.save(tmp_path / "out" / "study.toml"))
+    assert saved.materials == study.materials
+    assert saved.data["materials"]["carcass"] == "nasa-carcass"
+    # Also in the processes of a sweep, a comparison or an export.
+    assert bundle(study).unpacked(tmp_path).materials == study.materials
+
+
+def test_study_of_a_size_keeps_the_cards_near_it(tmp_path: Path) -> None:
+    home = tmp_path / "home"
+    home.mkdir()
+    (home / "study.toml").write_text(
+        'title = "by size"\nsection = "205/60R15"\n'
+        '[drive]\nspeed = "20 m/s"\nload = "4 kN"\npressure = "2.2 bar"\nduration = "60 s"\n',
+        encoding="utf-8",
+    )
+    ours = hiding_card(home, "rubber-tread-passenger", "0.3")
+    study = tf.study(home)
+    assert study.material_data["tread"][1] == ours
+    saved = tf.study(study.save(tmp_path / "elsewhere" / "study.toml"))
+    assert saved.materials == study.materials
+    assert list(saved.data["materials"]) == ["tread"]
+    (tmp_path / "worker").mkdir()
+    assert bundle(study).unpacked(tmp_path / "worker").materials == study.materials
+
+
+def test_study_inside_the_folder_of_a_clone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """In a clone the shipped library is the whole checkout, so a user's folder may stand in it."""
+    clone = tmp_path / "clone"
+    for folder in library.FOLDERS.values():
+        (clone / folder).mkdir(parents=True, exist_ok=True)
+    for card in (library.shipped() / "materials").glob("nasa-*.toml"):
+        shutil.copyfile(card, clone / "materials" / card.name)
+    home = clone / "work" / "mine"
+    shutil.copytree(library.find("study", "nasa-22x5.5-8pr").parent, home)
+    shutil.copyfile(library.find("section", "nasa-22x5.5-8pr"), home / "section.toml")
+    monkeypatch.setattr(library, "shipped", lambda: clone)
+    monkeypatch.chdir(tmp_path)
+    study = tf.study(home, {"section": "section.toml"})
+    (clone / "worker").mkdir()
+    for other in (tf.study(study.save(clone / "out" / "study.toml")), bundle(study).unpacked(clone / "worker")):
+        assert other.section.outer_diameter == study.section.outer_diameter
+        assert other.data["materials"]["tread"] == "nasa-tread"

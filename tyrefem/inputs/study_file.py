@@ -9,6 +9,7 @@ from typing import Any
 
 from tyrefem import library
 from tyrefem.quantity import written
+from tyrefem.sizes import completed_materials
 
 
 def write_study(
@@ -22,14 +23,14 @@ def write_study(
 
     from tyrefem.output import atomic_path
 
-    content = dict(data) if path.parent.resolve() == folder else _portable(data, folder)
+    content = dict(data) if path.parent.resolve() == folder else _portable(data, folder, path.parent)
     with atomic_path(path) as temporary:
         text = tomli_w.dumps(written(content))
         temporary.write_text((head(text) if head else "") + text, encoding="utf-8", newline="\n")
     return path
 
 
-def _portable(data: Mapping[str, Any], folder: Path | None) -> dict[str, Any]:
+def _portable(data: Mapping[str, Any], folder: Path | None, other: Path) -> dict[str, Any]:
     content: dict[str, Any] = copy.deepcopy(dict(data))
     whole = (folder or Path()).resolve()
     for holder, key in [(content, "cases"), (content.get("mesh", {}), "file")]:
@@ -37,9 +38,12 @@ def _portable(data: Mapping[str, Any], folder: Path | None) -> dict[str, Any]:
             holder[key] = str(whole / holder[key])
     for entry in content.get("measured", []):
         entry["table"] = str(whole / entry["table"])
-    content["section"] = library.located("section", content["section"], folder)
-    content["materials"] = {
-        region: library.located("material", reference, folder)
-        for region, reference in content.get("materials", {}).items()
-    }
+    content["section"] = library.located("section", content["section"], folder, other)
+    materials = content.get("materials", {})
+    for region, reference in completed_materials(content["section"], materials).items():
+        elsewhere = library.located("material", reference, folder, other)
+        # Cards by the rules of a size stay unwritten where the rules' name leads to them.
+        if elsewhere != reference:
+            materials[region] = elsewhere
+    content["materials"] = materials
     return content

@@ -89,6 +89,7 @@ class Bundle:
         for name, content in self.files.items():
             # Another thread may be reading the same file.
             temporary = folder / f"{name}-{uuid.uuid4().hex}"
+            temporary.parent.mkdir(exist_ok=True)
             temporary.write_bytes(content)
             temporary.replace(folder / name)
         return StudyData(self.name, self.data, None, folder)
@@ -118,6 +119,10 @@ def bundle(study: StudyData) -> Bundle:
         region: _packed("material", reference, near, files, paths)
         for region, reference in data.get("materials", {}).items()
     }
+    for region, reference in materials.items():
+        given = data["materials"].get(region)
+        if given is None or (isinstance(given, Mapping) and "base" not in given):
+            _keep_card_of_size(reference, near, files, paths)
     mesh = data.get("mesh", {})
     if isinstance(mesh.get("file"), str):
         mesh["file"] = _kept((near or Path()) / mesh["file"], files, paths)
@@ -130,18 +135,26 @@ def _packed(kind: str, reference: Any, near: Path | None, files: dict[str, bytes
         return reference
     name = reference["base"] if isinstance(reference, Mapping) else reference
     path = library.find(kind, name, near).resolve()
-    if not path.is_relative_to(library.shipped().resolve()):
+    if not library.stays_named(kind, name, path):
         name = _kept(path, files, paths)
     return {**reference, "base": name} if isinstance(reference, Mapping) else name
 
 
-def _kept(path: Path, files: dict[str, bytes], paths: dict[str, str]) -> str:
+def _keep_card_of_size(reference: Any, near: Path | None, files: dict[str, bytes], paths: dict[str, str]) -> None:
+    """A card that the rules of a size name: where it is the user's, it is packed to be found by this name."""
+    name = reference["base"] if isinstance(reference, Mapping) else reference
+    path = library.find("material", name, near).resolve()
+    if not library.stays_named("material", name, path):
+        _kept(path, files, paths, f"{library.FOLDERS['material']}/{name}.toml")
+
+
+def _kept(path: Path, files: dict[str, bytes], paths: dict[str, str], name: str = "") -> str:
     try:
         content = path.read_bytes()
     except OSError as error:
         raise InputError(f"cannot be read: {error.strerror or error}", file=path) from None
-    name = f"{path.stem}-{hashlib.sha256(content).hexdigest()[:8]}{path.suffix}"
-    files[name], paths[name] = content, str(path)
+    name = name or f"{path.stem}-{hashlib.sha256(content).hexdigest()[:8]}{path.suffix}"
+    files[name], paths[Path(name).name] = content, str(path)
     return name
 
 
