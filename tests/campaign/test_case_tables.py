@@ -80,6 +80,14 @@ def test_mistakes_are_named(tmp_path: Path, text: str | bytes, words: str) -> No
         ("name,drive.speed [mph]\na,20\nb,-3\n", "line 3, case 'b': drive.speed: '-3 mph' is out of range"),
         ("name,drive.speed [mph]\na,twenty\n", "line 2, case 'a': drive.speed: 'twenty mph' is not a quantity"),
         ("name,drive.speed\na,20\n", "line 2, case 'a': drive.speed: '20' has no unit"),
+        (
+            "name,drive.load [lbf],drive.deflection [mm]\na,2000,\nb,2000,25\n",
+            "line 3, case 'b': drive.deflection: 'drive.load' sets it too: give one of them",
+        ),
+        (
+            "name,section.crown_radius [in],section.parameters.crown_radius [in]\na,3.6,3.7\n",
+            "line 2, case 'a': section.parameters.crown_radius: 'section.crown_radius' sets it too",
+        ),
         ("name,section\na,nasa-22x5.5-9pr\n", "line 2, case 'a': section: no section named 'nasa-22x5.5-9pr'"),
     ],
 )

@@ -152,6 +152,7 @@ def test_a_folder_that_cannot_be_written(refused: Callable[..., str]) -> None:
             ["nasa-campaign", "--set", "drive.deflection=10 mm"],
             "'drive.deflection' is set again by 'drive.load' of every",
         ),
+        (["nasa-campaign", "--set", "drive . load=3000 lbf"], "is set again by 'drive.load' of every case"),
         (["nasa-campaign", "--set", "section.crown_radius=3.6 in"], "is set again by 'section' of"),
     ],
 )

@@ -82,6 +82,12 @@ def test_a_wrong_table_is_one_error(plan: dict[str, Any], words: str) -> None:
         planned(plan)
 
 
+def test_limits_of_a_load_and_a_deflection_exclude_each_other() -> None:
+    limits = {"drive.load": ["8 kN", "12 kN"], "drive.deflection": ["15 mm", "20 mm"]}
+    with pytest.raises(InputError, match=r"plan\.limits\.drive\.deflection: 'drive\.load' sets it too"):
+        candidate_drives(planned({"limits": limits}))
+
+
 def test_a_stated_drive_that_cannot_run_is_refused() -> None:
     # A phase name that is not there, a speed above the fastest one.
     wrong = planned({"limits": {"drive.phases.roling.speed": ["10 mph", "20 mph"]}})

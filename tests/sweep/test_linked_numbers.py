@@ -157,6 +157,33 @@ def test_a_wrong_link_is_one_clear_error(radial: Study, vary: dict[str, Any], li
         plan_of(radial, vary, link=link)
 
 
+@pytest.mark.parametrize(
+    ("vary", "words"),
+    [
+        (
+            {"drive.load": ("4 kN", "5 kN"), "drive.deflection": ["20 mm"]},
+            "vary.drive.deflection: 'drive.load' sets it too",
+        ),
+        (
+            {"drive.phases.fast.speed": ["10 m/s"], "drive.phases.0.speed": ["20 m/s", "30 m/s"]},
+            "vary.drive.phases.0.speed: 'drive.phases.fast.speed' sets it too",
+        ),
+    ],
+)
+def test_names_of_which_one_would_undo_the_other(tyre: Study, vary: dict[str, Any], words: str, tmp_path: Path) -> None:
+    phased = tyre.replace({"drive.phases": [{"name": "fast"}]})
+    with pytest.raises(InputError, match=words):
+        plan_of(phased, vary)
+    file = tmp_path / "list.csv"
+    file.write_text(f"name,{','.join(vary)}\na,{','.join(str(list(values)[-1]) for values in vary.values())}\n")
+    with pytest.raises(InputError, match=words.removeprefix("vary.")):
+        plan_of(phased, {}, cases=str(file))
+    # Each of them in a row of its own is a plain list.
+    first, second = vary
+    file.write_text(f"name,{first},{second}\na,{next(iter(vary[first]))},\nb,,{next(iter(vary[second]))}\n")
+    assert len(plan_of(phased, {}, cases=str(file)).variants) == 2
+
+
 def test_a_linked_variant_is_the_study_with_all_its_numbers_changed(tyre: Study) -> None:
     design = tyre.sweep({"losses": {"factor": [0.8, 1.2], "levels": 2}}, link={"losses": [LOSSES]}, reduced="never")
     by_hand = tyre

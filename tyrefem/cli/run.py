@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -189,7 +190,12 @@ def _tell_campaign(campaign: CampaignData, table: pd.DataFrame, folder: Path, pi
 def _refuse_overlaid(campaign: CampaignData, values: dict[str, Any]) -> None:
     """Refuse a change of a value that the table of cases sets again."""
     for key in values:
-        again = {case.name: other for case in campaign.cases for other in case.changes if _overlays(other, key)}
+        again = {
+            case.name: other
+            for case in campaign.cases
+            for other in case.changes
+            if overlays(campaign.study.data, other, key)
+        }
         if again:
             cases = "every case" if len(again) == len(campaign.cases) else f"case {', '.join(list(again)[:3])}"
             more = f" and {len(again) - 3} more" if 3 < len(again) < len(campaign.cases) else ""
@@ -200,11 +206,16 @@ def _refuse_overlaid(campaign: CampaignData, values: dict[str, Any]) -> None:
             )
 
 
-def _overlays(column: str, key: str) -> bool:
-    """Whether a column of the table of cases sets a value again: the same, a part or the whole, load or deflection."""
-    if {column, key} == {"drive.load", "drive.deflection"}:
-        return True
-    return column == key or key.startswith(f"{column}.") or column.startswith(f"{key}.")
+def overlays(data: Mapping[str, Any], column: str, key: str) -> bool:
+    """Whether a column of the table of cases sets a value again: the same, a part or the whole, load or deflection.
+
+    >>> overlays({"section": "nasa"}, "section.crown_radius", "section.parameters.crown_radius")
+    True
+    """
+    from tyrefem.inputs.changes import alternatives
+
+    set_again, (place, *_) = alternatives(data, column), alternatives(data, key)
+    return place in set_again or place.startswith(f"{set_again[0]}.") or set_again[0].startswith(f"{place}.")
 
 
 #: Place among the commands.

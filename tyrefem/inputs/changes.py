@@ -105,6 +105,37 @@ def by_places(data: Mapping[str, Any], key: str) -> str:
     return ".".join(parts)
 
 
+def check_compatible(data: Mapping[str, Any], changes: Mapping[str, Any]) -> None:
+    """Raise `InputError` for changes that belong together, of which one would undo another.
+
+    That is one number by two names, or alternatives such as a load and a deflection.
+
+    >>> check_compatible({"drive": {}}, {"drive.load": "2 kN", "drive.deflection": "20 mm"})
+    Traceback (most recent call last):
+    ...
+    tyrefem.errors.InputError: drive.deflection: 'drive.load' sets it too: give one of them
+    """
+    after = all_changed(data, changes)
+    given: dict[str, str] = {}
+    for key in changes:
+        for place in alternatives(after, key):
+            if place in given:
+                raise InputError(f"'{given[place]}' sets it too: give one of them", field=key)
+        given[by_places(after, key)] = key
+
+
+def alternatives(data: Mapping[str, Any], key: str) -> list[str]:
+    """The full dotted name of a number, and those of the drive's numbers that it replaces.
+
+    >>> alternatives({"drive": {"phases": [{"name": "taxi"}]}}, "drive.phases.taxi.load")
+    ['drive.phases.0.load', 'drive.phases.0.deflection']
+    """
+    place = by_places(data, key)
+    table, _, name = place.rpartition(".")
+    others = EXCLUSIVE_KEYS.get(name, []) if place.startswith("drive.") else []
+    return [place, *(f"{table}.{other}" for other in others)]
+
+
 def _parts(data: Mapping[str, Any], key: str) -> list[str]:
     parts = [part.strip().replace("-", "_") if i == 0 else part.strip() for i, part in enumerate(key.split("."))]
     if not all(parts):

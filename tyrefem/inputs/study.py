@@ -11,7 +11,7 @@ from tyrefem import library
 from tyrefem.cards import read_toml
 from tyrefem.cards.file_kinds import expect_kind
 from tyrefem.errors import InputError, nearest
-from tyrefem.inputs.changes import all_changed, check_changes_table
+from tyrefem.inputs.changes import all_changed, check_changes_table, check_compatible
 from tyrefem.inputs.study_contents import StudyContents
 from tyrefem.inputs.study_file import write_study
 from tyrefem.inputs.uncertain_numbers import uncertain_number
@@ -188,6 +188,7 @@ class StudyData(StudyContents):
     def case_study(self, case: Case) -> Self:
         """The study of a row of the table of cases; an error names the row's line."""
         try:
+            check_compatible(self.data, case.changes)
             changed = self.replace(case.changes)
             data = {key: value for key, value in changed.data.items() if key != "cases"}
             data["title"] = f"{case.name}: {case.note}" if case.note else case.name

@@ -14,7 +14,7 @@ from tyrefem.brief import Brief
 from tyrefem.cards.entries import entry_number
 from tyrefem.diagnose.layout.planned_runs import READING_INTERVAL
 from tyrefem.errors import InputError, nearest
-from tyrefem.inputs.changes import scaled
+from tyrefem.inputs.changes import check_compatible, scaled
 from tyrefem.inputs.plan_choice import Limits, limit_unit
 from tyrefem.inputs.study import StudyData
 from tyrefem.quantity import amount_parts, convert, parse
@@ -68,6 +68,10 @@ def candidate_drives(study: StudyData) -> tuple[CandidateDrive, ...]:
     if len(limits) > MOST_LIMITS:
         message = f"{len(limits)} quantities are limited; at most {MOST_LIMITS} can vary in one plan"
         raise InputError(message, field="plan.limits", file=study.file)
+    try:
+        check_compatible(study.data, {key: low for key, (low, _) in limits.items()})
+    except InputError as error:
+        raise error.within(field="plan.limits", file=study.file) from None
     drives, refused = [], []
     for point in spread_points(len(limits), choice.drives):
         changes = {

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from tyrefem.errors import InputError, InputWarning
+from tyrefem.inputs.changes import check_compatible
 from tyrefem.inputs.study import StudyData
 from tyrefem.inputs.uncertain_numbers import left_out
 from tyrefem.mechanics.cautions import warnings_of
@@ -151,6 +152,8 @@ def planned(study: StudyData, card: SweepCard, near: Path | None = None) -> Plan
         try:
             check_links(study, card.link, [*_used(card), *(name for changes in variants for name in changes)])
             variants, linked = _unlinked(study, variants, card.link)
+            for part in variants:
+                check_compatible(study.data, part)
             check_changes(study, [(f"variant '{name}'", part) for name, part in zip(names, variants, strict=True)])
         except InputError as error:
             raise error if error.file else error.within(file=path) from None
@@ -162,6 +165,12 @@ def planned(study: StudyData, card: SweepCard, near: Path | None = None) -> Plan
             chosen += _not_varied_otherwise(chosen, uncertain(study, card.uncertain))
         if card.sampled:
             size_of(chosen, card.chosen, card.count)
+        try:
+            check_compatible(
+                study.data, {key: value for part in chosen for key, value in part.changes(part.ends[0]).items()}
+            )
+        except InputError as error:
+            raise error.within(field="vary") from None
         ends = [(part, value) for part in chosen for value in part.ends]
         shown = [f"{part.label} = {part.setting(value) if part.name else repr(value)}" for part, value in ends]
         check_changes(study, [("", part.changes(value)) for part, value in ends], shown)
