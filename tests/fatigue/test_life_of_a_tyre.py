@@ -151,11 +151,25 @@ def test_places_are_sorted_and_apart(at_60: LifeData) -> None:
 
 def test_a_change_reaches_every_phase() -> None:
     study = tyrefem.study("nasa-taxi-takeoff")
-    changes = changed(study, "speed")
-    assert changes["drive.phases.0.speed"] == "22 mph"
-    assert changes["drive.phases.2.speed"] == {"from": "0 mph", "to": "176 mph"}
+    faster = study.replace(changed(study, "speed")).data["drive"]["phases"]
+    assert faster[0]["speed"] == "22 mph"
+    assert faster[2]["speed"] == {"from": "0 mph", "to": "176 mph"}
     assert changed(study, "pressure") == {"drive.pressure": "234.9 psi"}
-    assert changed(study, "ambient") == {"drive.ambient": "35 degC", "drive.phases.3.ambient": "25 degC"}
+    warmer = study.replace(changed(study, "ambient")).data["drive"]
+    assert warmer["ambient"] == "35 degC"
+    assert [phase.get("ambient") for phase in warmer["phases"]] == [None, None, None, "25 degC"]
+
+
+def test_a_change_reaches_phases_that_give_all_and_are_named_by_numbers() -> None:
+    phases = [
+        {"name": "1", "speed": "10 mph", "ambient": "20 degC"},
+        {"name": "0", "speed": {"from": "10 mph", "to": "30 mph"}, "ambient": "30 degC"},
+    ]
+    study = tyrefem.study("nasa-22x5.5-8pr", {"drive.phases": phases})
+    faster = study.replace(changed(study, "speed")).data["drive"]["phases"]
+    assert [phase["speed"] for phase in faster] == ["11 mph", {"from": "11 mph", "to": "33 mph"}]
+    warmer = study.replace(changed(study, "ambient")).card.drive
+    assert [phase.ambient.start for phase in warmer.phases] == [30.0, 40.0]
 
 
 @pytest.mark.parametrize("law", ["arcs", "barrel"])

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from tyrefem.errors import InputError, OutputError, ResultWarning
 from tyrefem.fatigue.life import LifeData, life
-from tyrefem.inputs.changes import scaled
+from tyrefem.inputs.changes import is_overridden, scaled
 from tyrefem.inputs.drive import SLIPS
 from tyrefem.quantity import parse
 
@@ -106,16 +106,19 @@ def changed(study: StudyData, name: str) -> dict[str, Any]:
     {'drive.speed': '22 mph'}
     """
     drive: Mapping[str, Any] = study.data["drive"]
-    tables = [("drive", drive)]
-    tables += [(f"drive.phases.{number}", phase) for number, phase in enumerate(drive.get("phases", ()))]
-    changes = {
-        f"{where}.{key}": _moved(table[key], name)
-        for where, table in tables
-        for key in SHIFTS[name][1]
-        if isinstance(table, Mapping) and key in table
+    keys = SHIFTS[name][1]
+    given = {**({"ambient": AMBIENT} if name == "ambient" else {}), **drive}
+    changes: dict[str, Any] = {
+        f"drive.{key}": _moved(given[key], name)
+        for key in keys
+        if key in given and not is_overridden(study.data, f"drive.{key}")
     }
-    if name == "ambient" and "ambient" not in drive:
-        changes["drive.ambient"] = _moved(AMBIENT, name)
+    phases = [dict(phase) for phase in drive.get("phases", ())]
+    if any(key in phase for phase in phases for key in keys):
+        # As a whole: by its number, a phase might be taken for one whose name is that number.
+        changes["drive.phases"] = [
+            phase | {key: _moved(phase[key], name) for key in keys if key in phase} for phase in phases
+        ]
     return changes
 
 
