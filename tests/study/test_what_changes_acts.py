@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import dataclasses
+import shutil
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -62,12 +62,18 @@ def test_kept_cases_and_packed_studies_see_an_edited_card(tmp_path: Path, monkey
     assert (tag_of(again, 4, 1), fitted_tag(again, 1), bundle(again).digest) == before
     second = edited(tmp_path, 0.2)
     assert not {tag_of(second, 4, 1), fitted_tag(second, 1), bundle(second).digest} & set(before)
-    # A card below the shipped folder, as in an editable installation, may be edited too.
-    in_clone = SimpleNamespace(load=library.load, find=library.find, of_size=library.of_size, shipped=lambda: Path("/"))
-    monkeypatch.setattr("tyrefem.variants.task.library", in_clone)
-    here = bundle(edited(tmp_path, 0.1))
+    # A card of the shipped folder, as in an editable installation, may be edited too; it goes by its name.
+    clone, away = tmp_path / "clone", tmp_path / "away"
+    for folder in ("geometry", "materials"):
+        shutil.copytree(library.shipped() / folder, clone / folder)
+    shutil.copytree(library.find("study", "nasa-22x5.5-8pr").parent, away)
+    monkeypatch.chdir(away)
+    monkeypatch.setattr(library, "shipped", lambda: clone)
+    here = bundle(tf.study(away))
     assert not here.files
-    assert bundle(edited(tmp_path, 0.3)).digest != here.digest
+    tread = clone / "materials" / "nasa-tread.toml"
+    tread.write_text(tread.read_text(encoding="utf-8").replace("value = 0.2\n", "value = 0.3\n"), encoding="utf-8")
+    assert bundle(tf.study(away)).digest != here.digest
 
 
 def test_a_rim_takes_heat_from_air_that_is_held_too() -> None:
