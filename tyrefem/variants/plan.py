@@ -152,8 +152,8 @@ def planned(study: StudyData, card: SweepCard, near: Path | None = None) -> Plan
         try:
             check_links(study, card.link, [*_used(card), *(name for changes in variants for name in changes)])
             variants, linked = _unlinked(study, variants, card.link)
-            for part in variants:
-                check_compatible(study.data, part)
+            for alike in {tuple(part): part for part in variants}.values():
+                check_compatible(study.data, alike)
             check_changes(study, [(f"variant '{name}'", part) for name, part in zip(names, variants, strict=True)])
         except InputError as error:
             raise error if error.file else error.within(file=path) from None
