@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import itertools
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
+import skfem
 from footprint_bodies import block
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -202,6 +204,23 @@ def test_camber_loads_one_shoulder_and_the_full_section_repeats_the_half() -> No
     assert moment > 0.1 * (tilted.pressure.sum(axis=0) * tilted.grid.tread.widths[0] * abs(z)).sum()
     mirrored = Pressing(body, Road(camber=math.radians(-2))).at_deflection(0.015, 24)
     assert mirrored.pressure[:, ::-1] == pytest.approx(tilted.pressure, abs=1e-6 * tilted.pressure.max())
+
+
+def test_a_hollow_tread_is_as_wide_on_a_half_section_as_on_the_full() -> None:
+    """Only its shoulders touch: the half had their widths alone, 77 mm of 105 mm."""
+    widths = []
+    for half in (True, False):
+        state = PlainTyre(half=half).state(along=10)
+        mesh, places = state.mesh, state.mesh.p.copy()
+        outside = np.unique(mesh.facets[:, mesh.boundaries["road"]])
+        places[0, outside] -= 5e-3 * np.clip(1 - np.abs(places[1, outside]) / 0.05, 0, None)
+        hollow = skfem.MeshQuad(places, mesh.t, sort_t=False).with_subdomains(mesh.subdomains)
+        pressed = Pressing(replace(state, mesh=hollow.with_boundaries(mesh.boundaries))).at_deflection(6e-3, 54)
+        middle = int(np.abs(pressed.grid.tread.places[1]).argmin())
+        assert pressed.load > 0
+        assert not pressed.pressure[:, middle].any()
+        widths.append(pressed.width)
+    assert widths[0] == pytest.approx(widths[1], rel=1e-9)
 
 
 def test_impossible_requests_get_one_clear_error(tyre: Pressing) -> None:

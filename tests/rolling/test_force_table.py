@@ -7,6 +7,7 @@ import math
 import pytest
 
 import tyrefem as tf
+from tyrefem.errors import InputError
 
 COARSE = {"mesh.size": "16 mm", "drive.load": "8 kN", "materials.tread": "rubber-tread-passenger"}
 ANGLE = math.radians(2.0)
@@ -41,3 +42,11 @@ def test_cambered_points_do_not_depend_on_signs_and_order_of_the_angles() -> Non
     assert tables[0] == tables[1]
     cambered = {row["slip_angle_rad"] for row in tables[1] if row["camber_rad"]}
     assert cambered == {0.0, 0.05, -0.05}
+
+
+def test_no_slip_at_all_is_one_clear_error() -> None:
+    """A slip of 0 alone ended in 'no points of forces' at the loads."""
+    study = tf.study("nasa-22x5.5-8pr", COARSE)
+    with pytest.raises(InputError, match="give at least one slip angle or one slip") as caught:
+        study.tyre_forces(loads=[4e3, 8e3], slip_angles=[], slips=[0.0], cambers=[])
+    assert caught.value.field == "slip_angles"

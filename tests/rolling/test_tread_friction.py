@@ -7,9 +7,11 @@ import pytest
 
 from tyrefem import study
 from tyrefem.api import Study
+from tyrefem.errors import InputError
 from tyrefem.mechanics.footprint.press import press
 from tyrefem.mechanics.rolling.friction import SLIP
 from tyrefem.mechanics.rolling.rolling_motion import RollingMotion
+from tyrefem.mechanics.rolling.steady_rolling import FrictionLaw
 from tyrefem.mechanics.rolling.wheel_on_road import FRICTION, tread_friction, wheel_on_road
 
 COARSE = {"mesh.size": "16 mm", "mechanics.motion": "linear"}
@@ -56,3 +58,17 @@ def test_friction_over_sliding_speed_settles() -> None:
 def test_without_the_table_it_is_the_estimate() -> None:
     pressed = press(study("nasa-22x5.5-8pr", {"mesh.size": "12 mm", "mechanics.motion": "linear"}))
     assert tread_friction(pressed) == FRICTION
+
+
+@pytest.mark.parametrize("law", [lambda v, p: np.nan * v, lambda v, p: -0.5 + 0 * v, lambda v, p: np.ones(3)])
+def test_a_law_that_gives_no_coefficient_is_one_clear_error(law: FrictionLaw) -> None:
+    with pytest.raises(InputError, match="must give a coefficient of at least 0") as caught:
+        study("nasa-22x5.5-8pr", COARSE).roll(slip_angle=0.02, friction=law)
+    assert caught.value.field == "friction"
+
+
+def test_a_law_may_give_a_single_number() -> None:
+    """It ended in a traceback."""
+    tyre = study("nasa-22x5.5-8pr", COARSE)
+    constant, law = (tyre.roll(slip_angle=0.02, friction=friction) for friction in (0.5, lambda v, p: 0.5))
+    assert law.state.force == pytest.approx(constant.state.force, rel=1e-3, abs=1.0)

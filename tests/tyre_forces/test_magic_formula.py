@@ -220,6 +220,8 @@ def test_a_tir_file_has_every_section_once(fit):
         ("FITTYP = 61\nFNOMIN = 0\nNOMPRES = 2e5\nUNLOADED_RADIUS = 0.3\n", "wrong.tir: FNOMIN: must be positive"),
         ("LENGTH = 'mm'\nFITTYP = 61\n", "line 1: must be 'meter', not 'mm'"),
         ("ANGLE = 'degrees'\nFITTYP = 61\n", "line 1: must be 'radians', not 'degrees'"),
+        ("LENGTH = mm\nFITTYP = 61\n", "line 1: must be 'meter', not 'mm'"),
+        ('FORCE = "kN"\nFITTYP = 61\n', "line 1: must be 'newton', not 'kn'"),
     ],
 )
 def test_a_wrong_tir_file_is_one_clear_error(text, message, tmp_path):

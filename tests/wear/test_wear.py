@@ -182,6 +182,17 @@ def test_a_worn_section_loses_the_volume_of_its_rings() -> None:
 
 
 @pytest.mark.fast
+def test_a_shoulder_with_transverse_grooves_is_in_the_volume_of_the_rings() -> None:
+    """Transverse grooves of a fifth counted as rubber of the shoulder: 1.4 % of the volume was left on the tread."""
+    section, cut = load(STUDY), replace(rings(), rubber=0.8)
+    worn, kilometres = WornFace.of(section, cut), 3e-3 / cut.mean
+    ring_km = worn.ring_kilometres(kilometres)
+    depths = worn.profile(section.locate(cut.places.T)[0]) * ring_km
+    face = float(depths @ cut.areas) + worn.shoulder.volume(ring_km * float(worn.profile.depth[-1]))
+    assert 0.8 * face == pytest.approx(cut.volume_per_km * kilometres, rel=1e-6)
+
+
+@pytest.mark.fast
 def test_the_worn_face_goes_on_to_the_shoulder() -> None:
     """No step at the last ring; the shoulder's rubber is in the volume of the rings."""
     study, even = tf.study(STUDY), rings(150.0, count=401)

@@ -149,11 +149,12 @@ def read_tir(path: Path) -> MagicFormula:
     for number, line in enumerate(lines, 1):
         name, equals, rest = line.split("$")[0].split("!")[0].partition("=")
         name, word = name.strip().upper(), rest.strip()
-        if not equals or word.startswith("'"):
-            unit = word.strip("' ").lower()
-            if equals and name in UNITS and unit not in UNITS[name]:
+        if equals and name in UNITS:
+            unit = word.strip("'\" ").lower()
+            if unit not in UNITS[name]:
                 message = f"line {number}: must be '{UNITS[name][0]}', not '{unit}': numbers are read in SI and radians"
                 raise InputError(message, file=path, field=name)
+        if not equals or name in UNITS or word.startswith("'"):
             continue
         try:
             values[name] = float(word)

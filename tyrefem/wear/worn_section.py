@@ -67,7 +67,7 @@ class WornFace:
 
     Parameters
     ----------
-    profile : of the rings. shoulder : beyond them. volume : of the rings per km, m3.
+    profile : of the rings. shoulder : beyond them. volume : of the rings per km, m3, with that of transverse grooves.
     """
 
     profile: WornProfile
@@ -78,7 +78,7 @@ class WornFace:
     def of(cls, section: Section, wear: RingWear) -> WornFace:
         """Of rings on a section."""
         profile = WornProfile.of(section, wear)
-        return cls(profile, WornShoulder.of(section, float(profile.s[-1])), wear.volume_per_km)
+        return cls(profile, WornShoulder.of(section, float(profile.s[-1])), wear.volume_per_km / wear.rubber)
 
     @property
     def end(self) -> float:

@@ -165,16 +165,18 @@ class Footprint(Brief):
 
     @property
     def width(self) -> float:
-        """Axial extent of the contact, m: nodes that touch at any angle, with their tributary widths and the grooves
-        between them."""
+        """Axial extent of the contact, m: nodes that touch at any angle and those between them, with their tributary
+        widths and the grooves between them."""
         _, axial = self.grid.tread.widths
         both = 2.0 if self.pressing.tread.half else 1.0
         touching = np.flatnonzero(self.pressure.max(axis=0) > 0)
         if not len(touching):
             return 0.0
-        reached = axial[touching.min() : touching.max() + 1].sum()
+        # The other half touches alike: the middle lies between them.
+        first = 0 if self.pressing.tread.half else int(touching.min())
+        reached = axial[first : touching.max() + 1].sum()
         z, grooves = self.grid.tread.places[1], self.grid.tread.grooves
-        least = 0.0 if self.pressing.tread.half else z[touching.min()]
+        least = 0.0 if self.pressing.tread.half else z[first]
         within = (grooves[:, 0] > least - 1e-6) & (grooves[:, 1] < z[touching.max()] + 1e-6)
         return float(both * (reached + np.diff(grooves[within], axis=1).sum()))
 

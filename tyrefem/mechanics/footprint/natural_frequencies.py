@@ -189,7 +189,7 @@ def natural_frequencies(
     from tyrefem.mechanics.solid.inflation import inflate
 
     NEEDS.check(study)
-    orders = tuple(dict.fromkeys(harmonics)) if isinstance(harmonics, Iterable) else ()
+    orders = tuple(harmonics) if isinstance(harmonics, Iterable) else ()
     if not orders or not all(isinstance(n, Integral) and 0 <= n <= HIGHEST for n in orders):
         raise InputError(f"must be whole numbers from 0 to {HIGHEST}, not {harmonics!r:.60}", field="harmonics")
     if isinstance(count, bool) or not (isinstance(count, Integral) and 1 <= count <= MOST):
@@ -207,10 +207,10 @@ def natural_frequencies(
     vibration = Vibration(Harmonics(dynamic_state(tyre, stiffening)), densities(study, tyre))
     belt = belt_elements(tyre)
     modes = []
-    for n in sorted(orders):
+    for n in sorted(set(orders)):
         for mode in vibration.modes(n, count):
             shares = vibration.shares(mode, belt)
-            modes.append(NaturalMode(mode, motion_name(mode, vibration.rigidity(mode, belt), shares), shares))
+            modes.append(NaturalMode(mode, motion_name(vibration, mode, belt, shares), shares))
     return NaturalFrequencies(study, tyre, vibration, tuple(modes), stiffening, amplitude)
 
 
@@ -245,14 +245,15 @@ def belt_elements(tyre: Inflation) -> Indices:
     return np.flatnonzero(crown).astype(np.int64)
 
 
-def motion_name(mode: Mode, rigidity: Mapping[str, float], shares: Mapping[str, float]) -> str:
-    """Name of a motion of the belt, by its rigidity and its shares of energy."""
+def motion_name(vibration: Vibration, mode: Mode, belt: Indices, shares: Mapping[str, float]) -> str:
+    """Name of a motion of the elements ``belt``, by its rigidity and its shares of energy."""
+    rigidity = vibration.rigidity(mode, belt)
     best = max(rigidity, key=rigidity.__getitem__, default="")
     if shares["belt"] < AT_REST:
         return "sidewall"
     if best and rigidity[best] > RIGID_SHARE:
         return best
     greatest = max(("radial", "lateral", "circumferential"), key=shares.__getitem__)
-    if greatest == "radial" and mode.symmetric is False:
+    if greatest == "radial" and vibration.opposed(mode, belt):
         return "belt torsion"
     return "breathing" if mode.harmonic == 0 and greatest == "radial" else f"{greatest} bending"

@@ -175,6 +175,19 @@ class Vibration(Brief):
         names = ("radial", "lateral", "circumferential")
         return {**{name: part / total for name, part in zip(names, parts, strict=True)}, "belt": motion}
 
+    def opposed(self, mode: Mode, members: Indices) -> bool:
+        """Whether the two edges of some elements (the belt's) move radially against each other.
+
+        A motion that mirrors itself in the mid plane of a half section never does, the others always.
+        """
+        if mode.symmetric is not None:
+            return not mode.symmetric
+        elements = self.harmonics.elements
+        z = elements.points[1][members].mean(axis=1)
+        edges = members[[z.argmin(), z.argmax()]]
+        first, last = mode.shape[COMPONENTS * elements.element_nodes[edges]].mean(axis=1)
+        return bool(first * last < 0)
+
     def rigidity(self, mode: Mode, members: Indices) -> dict[str, float]:
         """Motion of `RIGID` -> its share in the kinetic energy of the elements ``members``: (x M y)^2/(x M x y M y)."""
         mass, shares = self._mass_of(members), {}

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.errors import InputError
 from tyrefem.mechanics.rolling.rolled import RolledTyre
 from tyrefem.mechanics.rolling.rolling_grid import RollingGrid
 
@@ -36,14 +37,19 @@ class CoefficientSearch:
     _last: Array = field(default_factory=lambda: np.zeros(0), init=False)
 
     def of(self, grid: RollingGrid, last: RolledTyre | None) -> Array:
-        """(k,) coefficients after a ``last`` round on the same grid; None: the first round."""
+        """(k,) coefficients after a ``last`` round on the same grid; None: the first round.
+
+        Raises
+        ------
+        InputError : a law that gives a negative coefficient, no number, or a wrong number of them.
+        """
         if not callable(self.friction):
             return np.full(grid.n_points, float(self.friction))
         if last is None:
             zero = np.zeros(grid.n_points)
             self._share, self._round = np.zeros(0), 0
-            return np.asarray(self.friction(zero, zero), dtype=float)
-        law = np.asarray(self.friction(last.sliding_speed.ravel(), last.pressure.ravel()), dtype=float)
+            return self._law(zero, zero)
+        law = self._law(last.sliding_speed.ravel(), last.pressure.ravel())
         change = law - last.friction
         if len(self._share) != grid.n_points:
             self._share, self._round = np.ones(grid.n_points), 0
@@ -53,3 +59,13 @@ class CoefficientSearch:
             self._share = np.minimum(self._share * np.where(turned, BACK, 1.0), MOST / self._round)
         self._last = change
         return np.asarray(last.friction + self._share * change)
+
+    def _law(self, speed: Array, pressure: Array) -> Array:
+        """(k,) coefficients of the law, which may give a single number for all."""
+        assert callable(self.friction)
+        values = np.asarray(self.friction(speed, pressure), dtype=float)
+        if values.shape not in ((), speed.shape) or not (values >= 0).all():
+            raise InputError(
+                "the law must give a coefficient of at least 0 for every sliding speed and pressure", field="friction"
+            )
+        return np.full(speed.shape, values)

@@ -167,7 +167,7 @@ def tyre_forces(
             raise InputError(f"must be more than 0 N, not {load:g} N", field="loads")
     if len(set(loads)) < 2:
         raise InputError("give at least two different loads: the Magic Formula goes over load", field="loads")
-    if not len(slip_angles) and not len(slips):
+    if not len(slip_angles) and not any(slips):
         raise InputError("give at least one slip angle or one slip: the forces are those of slip", field="slip_angles")
     nominal = float(np.mean(loads))
     if phase.load is not None and min(loads) <= phase.load.start <= max(loads):

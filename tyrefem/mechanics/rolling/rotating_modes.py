@@ -176,7 +176,7 @@ def rotating_frequencies(
             mode = Mode(n, abs(w) / (2 * np.pi), shape, symmetric)
             shares = vibration.shares(mode, belt)
             direction = "standing" if n == 0 else "backward" if backward else "forward"
-            name = motion_name(mode, vibration.rigidity(mode, belt), shares)
+            name = motion_name(vibration, mode, belt, shares)
             modes.append(RotatingMode(mode, name, shares, direction, abs(w - n * spin) / (2 * np.pi)))
     common = (standing.stiffening, standing.amplitude)
     return RotatingFrequencies(study, tyre, vibration, tuple(modes), *common, spin)
