@@ -52,6 +52,7 @@ def test_a_crack_that_reaches_the_tearing_energy_ends_the_life_there() -> None:
     expected = (1 / 30e-6 - 1 / last) / (10e-6 * slope**2)
     assert cycles_to_failure(card, energy) == pytest.approx(expected, rel=1e-12)
     assert cycles_to_failure(card, 1e9) == 0.0
+    assert cycles_to_failure(card, 1e9, 1.0) == 0.0  # it tears at once, whether or not the load changes
 
 
 def test_no_cycle_lasts_for_ever() -> None:

@@ -62,7 +62,7 @@ def cycles_to_failure(
     share, exponent = driving_force(fatigue, ratio)
     peak: Array = np.asarray(2 * lindley_factor(stretch) * positive / fatigue.tearing_energy)
     slope = peak * share
-    with np.errstate(divide="ignore", over="ignore", under="ignore"):
+    with np.errstate(divide="ignore", over="ignore", under="ignore", invalid="ignore"):
         last = np.minimum(fatigue.crack, 1 / peak)
         ends = np.log(last / fatigue.flaw)
         power = 1 - exponent
@@ -75,4 +75,5 @@ def cycles_to_failure(
         rate = fatigue.growth_rate * temperature_factor(fatigue, temperature)
         cycles = np.maximum(integral, 0.0) / (rate * slope**exponent)
     grows = slope * fatigue.flaw * fatigue.tearing_energy > fatigue.threshold
-    return np.asarray(np.minimum(np.where(grows, cycles, LONGEST), LONGEST))
+    lasting = np.where(grows, cycles, LONGEST)
+    return np.asarray(np.minimum(np.where(last <= fatigue.flaw, 0.0, lasting), LONGEST))
