@@ -5,7 +5,6 @@ Their points and cells are those of `tyrefem.reports.grids`: x = z (axial), y = 
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -15,6 +14,7 @@ from tyrefem.output import atomic_path
 from tyrefem.reports.grids import SEGMENTS, Plane, Ring, cell_means, numbers
 from tyrefem.reports.paraview import script
 from tyrefem.reports.vtu import VtuFile, comment
+from tyrefem.reports.words import file_stem
 
 if TYPE_CHECKING:
     from tyrefem.simulation.result import ResultData
@@ -36,7 +36,7 @@ def write_series(result: ResultData, folder: Path, *, revolved: bool = False, se
     ------
     InputError : the folder cannot be written.
     """
-    name = file_name(result.study.name)
+    name = file_stem(result.study.name, "tyre")
     folder = Path(folder)
     if revolved:
         ring = Ring(result, segments)
@@ -45,14 +45,9 @@ def write_series(result: ResultData, folder: Path, *, revolved: bool = False, se
     return _write(result, folder, name, plane, VtuFile(plane.points, plane.cells, plane.cell))
 
 
-def file_name(study: str) -> str:
-    """The stem of a study's VTK files: its name, without characters that a file name may not have."""
-    return re.sub(r"[^\w.-]+", "-", study).strip("-.") or "tyre"
-
-
 def file_names(study: str) -> list[str]:
     """Names of the files that `write_series` may write."""
-    name = file_name(study)
+    name = file_stem(study, "tyre")
     ends = (".pvd", ".py", f"_{4 * '[0-9]'}*.vtu")
     return [f"{stem}{rest}" for stem in (name, f"{name}-revolved") for rest in ends]
 
