@@ -12,6 +12,7 @@ import pytest
 import tyrefem as tf
 from tyrefem.cli import main
 from tyrefem.cli.critical_speed import _rise_words
+from tyrefem.errors import InputError
 from tyrefem.mechanics.rolling.amplification import Amplification, Onset, amplification
 from tyrefem.mechanics.rolling.press import press
 from tyrefem.reports.figures.rise import rise_figure
@@ -52,6 +53,13 @@ def test_without_mass_nothing_rises() -> None:
     rise = amplification(tyre, 84.0, speeds=[1.0, 60.0])
     assert rise.rises[1].loss == pytest.approx(1.0, abs=2e-3)
     assert rise.rises[1].strain == pytest.approx(1.0, abs=2e-3)
+
+
+def test_a_tyre_without_loss_has_no_heat_that_rises() -> None:
+    tyre = study()
+    tyre = tyre.replace({f"materials.{name}.loss_tangent.value": 0.0 for name in tyre.materials})
+    with pytest.raises(InputError, match="every tan delta is 0"):
+        amplification(tyre, 84.0, speeds=[1.0])
 
 
 def test_the_nearest_effect_is_the_effect(rise: Amplification) -> None:

@@ -79,6 +79,12 @@ def test_without_loss_it_is_the_footprint_of_today(drum: float, half: bool) -> N
         assert now.pressure[middle : middle + 4] == pytest.approx(today.pressure[:4], rel=1e-8, abs=1e-3)
 
 
+def test_without_loss_the_balance_is_even() -> None:
+    resistance = rolling_resistance(rolling(0.0), 60, DEFLECTION)
+    assert resistance.by_loss == 0
+    assert resistance.balance == 0
+
+
 def test_half_and_full_section_agree() -> None:
     half, full = (rolling(0.2, half=half, spin=40.0).at_deflection(DEFLECTION, 36) for half in (True, False))
     assert full.load == pytest.approx(half.load, rel=1e-6)

@@ -103,6 +103,8 @@ def test_without_it_friction_stays_cold() -> None:
     }
     assert "follows the mean temperature of the tread" in texts[True]
     assert "is that of the drive's initial temperature" in texts[False]
+    assert "The temperature acts on: the coefficient of friction." in texts[True]
+    assert "The temperature acts on: nothing." in texts[False]
 
 
 def test_a_constant_coefficient_needs_no_further_run() -> None:

@@ -68,6 +68,10 @@ def test_locked_wheel_is_printed_and_drawn(here: Path, capfd: pytest.CaptureFixt
             ["rise", *PAD, "--pressure", "1 bar", "--behind", "-1 mm"],
             "tyrefem: --behind: must be finite and at least 0",
         ),
+        (
+            ["rise", *PAD, "--pressure", "1 bar", "--slid", "30 cm", "--slider", "ice", "--track", "rubber"],
+            "tyrefem: --slid: must be 1.04 m or more",
+        ),
         (["rise", *PAD, "--pressure", "1 bar", "--breadth", "9 mm"], "tyrefem: --breadth: goes with --load"),
         (["rise", "--speed", "0 m/s", *PAD[2:], "--pressure", "1 bar"], "--speed"),
         (["rise", *PAD[:4], "--friction=-0.5", "--pressure", "1 bar"], "--friction"),

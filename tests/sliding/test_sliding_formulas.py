@@ -64,6 +64,13 @@ def test_share_into_the_slider_is_the_papers() -> None:
     assert sliding.share_of_like_solids(0.04, 1.0) == pytest.approx(0.2)
 
 
+def test_the_slider_takes_no_more_than_all_heat() -> None:
+    """Ice conducts far better than rubber: equation 9 gives a share of 2 and more at its own length."""
+    with pytest.raises(InputError, match=r"slid: must be 0\.185 m or more: .* 2\.15 times all heat"):
+        sliding.share_into_slider(0.04, 0.04, ICE, RUBBER)
+    assert sliding.share_into_slider(0.04, 0.186, ICE, RUBBER) == pytest.approx(1.0, rel=0.01)
+
+
 @pytest.mark.parametrize("bad", [-1.0, math.nan, math.inf])
 @pytest.mark.parametrize(
     ("field", "call"),

@@ -37,3 +37,9 @@ def test_the_page_names_the_motion_and_what_the_linear_one_leaves_out(bias_cycle
     assert ["motion of the footprint", "linear about the inflated tyre: a quick look, too stiff"] in mechanics_rows(
         linear
     )
+
+
+def test_the_page_states_the_loss_of_a_harmonic_as_the_strain_cycle_has_it() -> None:
+    """n pi tan delta e : C' : e a revolution is 2 pi tan delta of the strain energy, e : C' : e / 2, in each cycle."""
+    texts = dict(assumptions(bias(), []))
+    assert "loses 2π tan δ of its strain energy per cycle; tan δ depends" in texts["Loss of every harmonic"]

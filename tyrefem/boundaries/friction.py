@@ -101,14 +101,15 @@ def share_into_slider(length: float, slid: float, slider: Solid, track: Solid) -
     """F_r/F_0 = (2 K_r/(pi K_w)) sqrt(k_w t_c/(k_r T))   (9), with t_c/T = l/L at constant speed.
 
     The slider's surface has equation 1's rise since the start. This is the worst case; the real share is less. For
-    rubber on teak the factor before sqrt(l/L) is 0.96 (10). Valid for l much less than L.
+    rubber on teak the factor before sqrt(l/L) is 0.96 (10). Valid for l much less than L, as far as the share is 1 at
+    most: for a slider that conducts far better than the track, L is many lengths.
 
     Parameters
     ----------
     length : l of the slider, m. slid : L, the total sliding distance, m, at least the length.
 
-    Returns a number. Raises InputError for lengths that are not positive or a distance shorter than the slider.
-    Source: Roberts, *Temperature rise when rubber slides*.
+    Returns a number of 1 at most. Raises InputError for lengths that are not positive, a distance shorter than the
+    slider, or one so short that the share would be more than 1. Source: Roberts, *Temperature rise when rubber slides*.
 
     >>> from tyrefem.boundaries.friction_names import RUBBER, TEAK
     >>> round(share_into_slider(0.04, 1.0, RUBBER, TEAK), 3)
@@ -116,7 +117,11 @@ def share_into_slider(length: float, slid: float, slider: Solid, track: Solid) -
     """
     _check_sliding_distance(length, slid)
     ratio = slider.conductivity / track.conductivity * math.sqrt(track.diffusivity / slider.diffusivity)
-    return 2.0 / math.pi * ratio * math.sqrt(length / slid)
+    share = 2.0 / math.pi * ratio * math.sqrt(length / slid)
+    if share > 1.0:
+        times = f"the formula gives the slider {share:.3g} times all heat at {slid:g} m"
+        raise InputError(f"must be {share**2 * slid:.3g} m or more: {times}", field="slid")
+    return share
 
 
 def share_of_like_solids(length: float, slid: float) -> float:

@@ -28,7 +28,7 @@ FORMAT = "tyrefem real-time model 2"
 #: Unit of every input.
 INPUTS = {"speed": "m/s", "load": "N", "pressure": "Pa", "ambient": "degC", "road_temperature": "degC"}
 ATMOSPHERE, KELVIN = 101325.0, 273.15
-#: (1 - e^-z)/z ~ sum_j b_j / (1 + GAMMA z)^j, from one inverse: e^-z to 2.1e-4 for all z >= 0, to z^4 for small z, and
+#: (1 - e^-z)/z ~ sum_j b_j / (1 + GAMMA z)^j, from one inverse: e^-z to 2.1e-4 for all z >= 0, exact to z^3, and
 #: 0 for stiff modes (minimax fit of these constraints; Norsett 1978 calls them restricted approximations).
 GAMMA = 0.1608
 PHI = (

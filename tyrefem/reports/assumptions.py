@@ -59,7 +59,7 @@ def assumptions(study: StudyData, estimates: list[str]) -> list[tuple[str, str]]
     if any(assumption := strain_law(study).assumption_of(study)):
         always[0] = assumption
     if mechanics.feedback is not None:
-        always[-1] = ("Feedback of temperature on the strain cycle", _feedback_assumptions(mechanics.feedback))
+        always[-1] = ("Feedback of temperature on the strain cycle", _feedback_assumptions(study, mechanics.feedback))
     locked = LOCKED if any(drive.locked_since(start) is not None for start in drive.starts) else {}
     stated = [always[0], _loss_assumption(study), *_slip_assumptions(study).items(), *locked.items(), *always[1:]]
     stated += [*_effect_assumptions(study), *_formulas_from_memory(study)]
@@ -92,7 +92,9 @@ def _loss_assumption(study: StudyData) -> tuple[str, str]:
         if mechanics.moduli == "secant":
             laws += "; their storage modulus is that of the region's strain amplitude under load"
     if mechanics.strain == "fem" and mechanics.revolution == "harmonics":
-        every = f"Every harmonic of the strain round the wheel loses π tan δ of its energy per cycle; tan δ {laws}."
+        every = (
+            f"Every harmonic of the strain round the wheel loses 2π tan δ of its strain energy per cycle; tan δ {laws}."
+        )
         return "Loss of every harmonic", every
     cycle = (
         "The strain energy times tan δ is lost once per revolution (convention "
@@ -144,7 +146,7 @@ def _validation(study: StudyData) -> str:
 
 def _friction_assumption(study: StudyData) -> str:
     feedback = study.card.mechanics.feedback
-    if not any(card.friction is not None and card.friction.follows_temperature for card in study.materials.values()):
+    if not _friction_follows_temperature(study):
         return "The coefficient of friction does not depend on the temperature."
     if feedback is None or not feedback.friction:
         return (
@@ -153,10 +155,15 @@ def _friction_assumption(study: StudyData) -> str:
     return "The coefficient of friction follows the mean temperature of the tread."
 
 
-def _feedback_assumptions(choice: Feedback) -> str:
-    acting = [text for on, text in ((choice.pressure, "its pressure"), (choice.modulus, "every modulus")) if on]
+def _friction_follows_temperature(study: StudyData) -> bool:
+    return any(card.friction is not None and card.friction.follows_temperature for card in study.materials.values())
+
+
+def _feedback_assumptions(study: StudyData, choice: Feedback) -> str:
+    rubs = choice.friction and study.card.boundaries.sliding.rolls and _friction_follows_temperature(study)
+    acts = ((choice.pressure, "its pressure"), (choice.modulus, "every modulus"), (rubs, "the coefficient of friction"))
+    acting = ", ".join(text for on, text in acts if on) or "nothing"
     return (
         "The contained air has one temperature and a constant volume. The temperature acts on: "
-        f"{' and '.join(acting) or 'nothing'}. A modulus follows its region's mean temperature if the card gives a "
-        "softening."
+        f"{acting}. A modulus follows its region's mean temperature if the card gives a softening."
     )

@@ -13,13 +13,15 @@ _DEVIATION = {
 }  # fmt: skip
 _ENERGY = {"energy_J": "number: Over the drive.", "power_W*": "number: At the end."}
 _LEFT_OUT = {
-    "mean": "number: Strain, mean by energy.", "greatest": "number: Greatest.", "region": "text: Where that is.",
+    "mean": "number: Strain that a linear strain leaves out, root mean square over the volume by that of the strain.",
+    "greatest": "number: Greatest.", "region": "text: Where that is.",
 }  # fmt: skip
 _TURNING = {
     "angular_speed_rad_s": "number: Rotation.", "centrifugal_growth_m": "number: Growth of the radius by rotation.",
     "pressure_offset_m": "number?: Of the contact's pressure, to the front.",
     "rolling_resistance_by_offset_N": "number?: By the moment of that offset.",
-    "rolling_resistance_by_loss_N": "number?: By the loss.", "rolling_resistance_balance": "number?: Their difference.",
+    "rolling_resistance_by_loss_N": "number?: By the loss.",
+    "rolling_resistance_balance": "number?: That by offset over that by loss, less 1.",
 }  # fmt: skip
 
 #: Facts of a mesh.

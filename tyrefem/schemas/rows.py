@@ -78,7 +78,8 @@ ROWS: dict[str, Keys] = {
         "time_s": "number: When.", **_PLACE,
     },
     "run.heat_budget": {
-        "imbalance": "number: Generated - stored - lost over generated.", "residual_J": "number: The same in joules.",
+        "imbalance": "number: Largest residual of any time over the largest heat exchanged.",
+        "residual_J": "number: Generated + sliding - stored - lost at the end.",
         "generated": "table: Part of the section -> energy_J, power_W at the end.",
         "stored": "table: Region -> energy_J, power_W at the end.",
         "lost": "table: Way out -> energy_J, power_W at the end.",
@@ -109,7 +110,7 @@ ROWS: dict[str, Keys] = {
         "rolling_resistance_phase": "text?: The rolling phase with most heat.",
         "rolling_resistance_N": "number?: Force at its end.",
         "rolling_resistance_coefficient": "number?: Force over load.",
-        "heat_budget_imbalance": "number?: Generated - stored - lost over generated.",
+        "heat_budget_imbalance": "number?: Largest residual of any time over the largest heat exchanged.",
         "failure": "text?: Why it failed; else empty.",
         "*": "any: REGION_max_degC and SENSOR_degC.",
     },

@@ -189,7 +189,7 @@ def amplification(
 
     Raises
     ------
-    InputError : strains that are not by finite elements; errors of `press` at the lowest speed.
+    InputError : strains that are not by finite elements; a tyre without loss; errors of `press` at the lowest speed.
 
     >>> from tyrefem import study
     >>> tyre = study("nasa-22x5.5-8pr", {"mesh.size": "16 mm", "mechanics.strain": "fem"})
@@ -223,6 +223,9 @@ def _rises(
             return rises, (speed, error.message)
         around = 2 * np.pi * tyre.footprint.rolling_radius
         lost, reference = (_lost(each, speed / around, temperature) for each in (tyre, slow))
+        if reference == 0:
+            message = f"the tyre loses nothing at {temperature:g} degC, so its heat does not rise: every tan delta is 0"
+            raise InputError(message, field="materials", file=study.file)
         strain = float(np.sqrt(_energy(tyre) / _energy(slow)))
         rises.append(Rise(speed, lost / around, lost / reference, strain, limited))
     return rises, None

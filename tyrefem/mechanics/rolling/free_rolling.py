@@ -334,8 +334,8 @@ class FreeRollingResistance(Brief):
 
     @property
     def balance(self) -> float:
-        """Resistance by offset over that by loss, minus 1."""
-        return self.by_offset / self.by_loss - 1
+        """Resistance by offset over that by loss, minus 1; 0 without loss."""
+        return self.by_offset / self.by_loss - 1 if self.by_loss else 0.0
 
 
 def rolling_resistance(
