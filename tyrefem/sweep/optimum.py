@@ -19,7 +19,7 @@ from tyrefem.sweep.evaluation import Evaluator
 from tyrefem.sweep.part import InSentences
 from tyrefem.sweep.sweep import Sweep
 from tyrefem.variants.answer_units import difference_unit, name_of, shown
-from tyrefem.variants.answers import NEVER, check_answer
+from tyrefem.variants.answers import check_answer, comparable
 from tyrefem.variants.card import LimitCard, OptimiseCard
 from tyrefem.variants.execution import Execution, ExecutionOptions
 from tyrefem.variants.outcomes import Answered, Failed, Outcome
@@ -126,11 +126,12 @@ def _variant(varied: Sequence[Varied], x: Array) -> dict[str, Any]:
 
 
 def objective(outcome: Outcome, card: OptimiseCard) -> float:
-    """The number to minimise; a time that is not reached is the longest, a failure or no such answer is infinite."""
+    """The number to minimise; a time that is not reached is the longest, a failure or no such number is infinite."""
     if isinstance(outcome, Failed) or card.answer not in outcome.answers:
         return math.inf
-    value = float(outcome.answers[card.answer])
-    value = NEVER if math.isnan(value) else value
+    value = comparable(card.answer, outcome.answers[card.answer])
+    if math.isnan(value):
+        return math.inf
     return value if card.minimise else -value
 
 
@@ -146,8 +147,10 @@ def violation(outcome: Outcome, limits: Mapping[str, LimitCard], margins: Mappin
         return FAILED if limits else 0.0
     total = 0.0
     for name, limit in limits.items():
-        value = float(outcome.answers[name])
-        value = NEVER if math.isnan(value) else value
+        value = comparable(name, outcome.answers[name])
+        if math.isnan(value):
+            total += FAILED
+            continue
         margin = (margins or {}).get(name, 0.0) if outcome.by == "reduced" else 0.0
         total += 0.0 if limit.below is None else _beyond(value + margin, limit.below)
         total += 0.0 if limit.above is None else _beyond(margin - value, -limit.above)
