@@ -235,7 +235,8 @@ class Optimum(InSentences):
         count = f"{counted(self.evaluated, 'different variant')} evaluated"
         tried = count + (f", {failed} failed" if failed else "")
         if self.best is None:
-            return [f"{heading}: no variant keeps the limits ({tried})."]
+            why = "no variant keeps the limits" if plan.limits else "no variant has a number"
+            return [f"{heading}: {why} ({tried})."]
         sentences = [f"{heading}: {shown(self.answer, self.full[self.answer])} at {self.where}, by a full run."]
         others = [name for name in plan.limits if name != self.answer]
         if others:
@@ -304,11 +305,10 @@ def optimum(
     with Evaluator(plan, execution) as evaluate:
         nominal = Evaluator(plan, Execution(execution.scheduler))([{}])[0]
         _check_there(nominal, (card.answer, *plan.limits))
-        evaluate.train(card.runs)
-        exhaustive = (
-            all(number.values for number in plan.varied)
-            and math.prod(len(number.values) for number in plan.varied) <= card.runs
-        )
+        listed = all(number.values for number in plan.varied)
+        combinations = math.prod(len(number.values) for number in plan.varied)
+        exhaustive = listed and combinations <= card.runs
+        evaluate.train(combinations if exhaustive else card.runs)
         if exhaustive:
             evaluate(Grid(plan.varied))
             ended = ""
@@ -359,7 +359,8 @@ def _verified(evaluate: Evaluator, card: OptimiseCard) -> tuple[int | None, Mapp
     limits = evaluate.plan.limits
     outcomes = evaluate.outcomes
     answered = [n for n, outcome in outcomes.items() if isinstance(outcome, Answered)]
-    feasible = [n for n in answered if violation(outcomes[n], limits, evaluate.margins) == 0]
+    numbered = [n for n in answered if objective(outcomes[n], card) < math.inf]
+    feasible = [n for n in numbered if violation(outcomes[n], limits, evaluate.margins) == 0]
     for n in sorted(feasible, key=lambda n: (objective(outcomes[n], card), n))[:CANDIDATES]:
         (full,) = evaluate([evaluate.variants[n]], full=True)
         if isinstance(full, Answered) and violation(full, limits) == 0:
