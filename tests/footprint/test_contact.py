@@ -252,7 +252,7 @@ def test_a_slight_deflection_is_not_without_load(tyre: Pressing) -> None:
 
 
 @pytest.mark.parametrize(("name", "given", "words"), [("load", 1e-3, "0.001 N"), ("deflection", 1e-4, "0.1 mm")])
-def test_a_slight_contact_without_convergence_is_told_at_the_load(
+def test_a_slight_contact_without_convergence_names_the_load(
     tyre: Pressing, name: str, given: float, words: str
 ) -> None:
     """A drive has no key 'tolerance'."""
