@@ -133,7 +133,7 @@ def test_an_interrupted_run_has_no_life(plateau: bool) -> None:
     study = tyre()
     result = study.run()
     part = replace(result.history, times=result.times[:5], values=result.history.values[:5], interrupted=True)
-    with pytest.raises(InputError, match="result: the run ends at .* s of 60 s"):
+    with pytest.raises(InputError, match=r"result: the run ends at .* s of 60 s"):
         life(study, result=replace(result, history=part), plateau=plateau)
 
 
