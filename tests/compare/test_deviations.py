@@ -87,8 +87,16 @@ def test_mostly_outside_is_an_error_in_the_summary(study):
 
 
 def test_wholly_outside_is_refused(study):
-    with pytest.raises(InputError, match="no measured time is within the simulated span"):
+    with pytest.raises(InputError, match=r"no sensor has a reading within the simulated span; .*2 of 2 measured times"):
         compare(study, measured_from(study, [2000.0, 2100.0]))
+
+
+def test_times_within_the_span_without_a_reading_are_not_called_outside(study):
+    run = measured_from(study, [0.0, 100.0, 2000.0])
+    temperatures = run.temperatures.copy()
+    temperatures.iloc[:2] = np.nan
+    with pytest.raises(InputError, match=r"no sensor has a reading within the simulated span; .*1 of 3 measured times"):
+        compare(study, MeasuredRun("run-1", run.times, temperatures))
 
 
 def test_no_reading_is_no_deviation(study):

@@ -286,3 +286,36 @@ def test_ctrl_c_between_the_parts_of_one_time_leaves_the_whole_times(monkeypatch
     history = problem.transient(np.linspace(0.0, 100.0, 11), 50.0, partial=True)
     assert history.interrupted
     assert len(history.times) == len(history.values) == len(history.budget.residual) == 2
+
+
+@pytest.mark.parametrize("condition", [Film(lambda x, t: 50.0 + 50.0 * (t > 0.3), 20.0), Fixed(lambda x, t: 100.0 + t)])
+@pytest.mark.parametrize(
+    "breakpoints", [[0.3, 0.1 + 0.2], [0.3, 0.3 + 1e-15], [5e-324, 0.3], [0.3, float(np.nextafter(1.0, 0.0))]]
+)
+def test_breakpoints_that_differ_by_rounding_are_one(condition: Film | Fixed, breakpoints: list[float]) -> None:
+    """A phase that starts at 0.1 s + 0.2 s, and an effect that begins at 0.3 s."""
+    problem = Conduction(MESH, REGIONS, {"outside": condition}, {"all": lambda x, t, T: 1e6 * (1 + (t > 0.3)) + 0 * T})
+    history = problem.transient([0.0, 0.3, 1.0], 25.0, breakpoints=breakpoints)
+    once = problem.transient([0.0, 0.3, 1.0], 25.0, breakpoints=[0.3])
+    assert history.values[-1] == pytest.approx(once.values[-1], abs=1e-9)
+    assert history.budget.imbalance < 1e-9
+
+
+@pytest.mark.parametrize("rate", [0.01, 0.1])
+def test_a_thermal_runaway_is_named(rate: float) -> None:
+    """Heat that doubles with every few kelvins has no solution beyond a finite time: c dT/dt = q exp(b (T - T_0))."""
+
+    def heat(x: np.ndarray, t: float, T: np.ndarray) -> np.ndarray:
+        return 1e6 * np.exp(np.minimum(rate * (T - 25.0), 300.0))
+
+    problem = Conduction(square(1), REGIONS, {}, {"all": heat})
+    ends = RUBBER.heat_capacity / (1e6 * rate)
+    with pytest.raises(SolverError, match="temperatures rise without bound") as error:
+        problem.transient([0.0, 10 * ends], 25.0)
+    assert float(str(error.value).split("t = ")[1].split()[0]) == pytest.approx(ends, rel=1e-3)
+
+
+def test_far_too_much_heat_ends_a_run() -> None:
+    problem = Conduction(square(1), REGIONS, {}, {"all": 1e12})
+    with pytest.raises(SolverError, match="far too much heat"):
+        problem.transient([0.0, 600.0], 25.0)

@@ -129,3 +129,16 @@ def test_isolated_massless_reservoir_is_refused() -> None:
     problem = Conduction(ring(), {"wall": STEEL}, {"outside": Fixed(0.0)}, reservoirs={"gas": Reservoir(0.0)})
     with pytest.raises(InputError, match="exchanges heat with nothing"):
         problem.transient([0, 1])
+
+
+def test_a_capacity_over_temperature_beside_a_massless_reservoir() -> None:
+    """The massless one follows the mean of its neighbours; no division by its capacity."""
+    films = {"inside": Film(50.0, "gas"), "outside": Film(20.0, "shroud")}
+    reservoirs = {
+        "gas": Reservoir(lambda T: 50.0 + 0.1 * T, 80.0),
+        "shroud": Reservoir(0.0, exchanges=((2.0, 25.0),)),
+    }
+    history = Conduction(ring(), {"wall": STEEL}, films, reservoirs=reservoirs).transient([0.0, 100.0, 900.0], 25.0)
+    wall = history.field(2).at([(0.21, 0.05)])[0]
+    G = 20.0 * 2 * np.pi * 0.21 * 0.1
+    assert history.reservoirs["shroud"][-1] == pytest.approx((G * wall + 2.0 * 25.0) / (G + 2.0), abs=1e-3)

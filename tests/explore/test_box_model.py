@@ -14,13 +14,15 @@ from tyrefem.api import Exploration, Study
 from tyrefem.errors import InputError
 from tyrefem.realtime.box_certificate import differences, is_temperature
 from tyrefem.realtime.box_checks import limited_answers
-from tyrefem.realtime.box_runs import FullHistory, SettingTask, perform_history, series_of
+from tyrefem.realtime.box_model import explored as explored_box
+from tyrefem.realtime.box_runs import FullHistory, SettingTask, perform_history, perform_skin, series_of
 from tyrefem.realtime.default_box import default_box
 from tyrefem.realtime.drive_inputs import drive_inputs, inputs_of
 from tyrefem.realtime.export import write
 from tyrefem.realtime.inputs import NAMES
 from tyrefem.realtime.setting_tyre import step_lengths
 from tyrefem.realtime.tyre import Inputs, RealTimeTyre
+from tyrefem.reduced.training import Snapshots
 from tyrefem.reports.explore_data import changes_of_file
 from tyrefem.variants.answers import answer_names
 from tyrefem.variants.plan import plan_of
@@ -53,6 +55,30 @@ def test_the_error_of_the_coefficient_is_that_of_the_whole_drive(explored: Explo
     assert errors["rolling_resistance"] > 1.01 * errors["rolling_resistance_N"]
     ratio = errors["rolling_resistance"] / errors["rolling_resistance_coefficient"]
     assert ratio == pytest.approx(full.answers["load_N"], rel=0.01)
+
+
+def test_the_skin_of_a_drive_of_half_a_second() -> None:
+    """All phases are shorter than the first time after a jump at which the skin is taken."""
+    short = {"mesh.size": "20 mm", "drive.duration": "0.5 s"}
+    plan = plan_of(tyrefem.study("nasa-22x5.5-8pr", short), {"drive.ambient": ["10 degC", "30 degC"]})
+    skin = perform_skin(SettingTask(plan.packed, plan.variants[0]))
+    assert isinstance(skin, Snapshots)
+    assert len(skin.fields) == len(skin.sources) == 1
+
+
+def test_a_drive_to_rest_has_the_rolling_resistance_of_a_run() -> None:
+    """At its last reading before rest, not at the end of the phase before, or at the start."""
+    phases = [
+        {"name": "start", "speed": "10 m/s", "duration": "20 s"},
+        {"name": "to rest", "speed": {"from": "10 m/s", "to": "0 m/s"}, "duration": "100 s"},
+    ]
+    drive = {"load": "2700 lbf", "pressure": "83 psi", "phases": phases}
+    study = tyrefem.study("nasa-22x5.5-8pr", {"mesh.size": "20 mm", "drive": drive})
+    box = explored_box(study, {"drive.ambient": ("24 degC", "26 degC")})
+    answers, resistance = box.solve(box.numbers([0.5])).answers, study.run().rolling_resistance
+    assert answers["rolling_resistance_N"] == pytest.approx(resistance.force, rel=1e-3)
+    assert answers["rolling_resistance_coefficient"] == pytest.approx(resistance.coefficient, rel=1e-3)
+    assert box.certificate.errors["rolling_resistance_N"] < 0.001 * resistance.force
 
 
 def test_the_arrays_are_those_of_the_real_time_export(explored: Exploration, tmp_path: Path) -> None:

@@ -122,3 +122,15 @@ def test_an_unlikely_tearing_energy_is_a_warning() -> None:
     data = copy.deepcopy(library.load("material", "rubber-sidewall")[0])
     card = MaterialCard.check({**data, "fatigue": {**TABLE, "tearing_energy": "10 J/m**2"}})
     assert [warning.field for warning in card.warnings()] == ["fatigue.tearing_energy"]
+
+
+def test_large_exponents_stay_numbers() -> None:
+    """Crystallising rubber that hardly relaxes: F exp(ratio_rate R) of some hundred, near the tearing energy."""
+    card, energy, ratio = fatigue(exponent=8.0, crystallising=True, ratio_rate=4.0), 5e7, [0.3, 0.6, 0.8, 0.9]
+    exponent = 8.0 * np.exp(4.0 * np.array(ratio))
+    start = 2 * 2.95 * energy * 30e-6 / 1e4  # T over T_c of the flaw, 0.885
+    expected = 3.0 * (start**-exponent - 1 / start) / (exponent - 1)  # c_0 / r_c = 3
+    assert cycles_to_failure(card, energy, ratio) == pytest.approx(expected, rel=1e-9)
+    lives = cycles_to_failure(card, np.geomspace(1.0, 1e12, 25)[:, None], np.linspace(0.0, 1.0, 21))
+    assert np.isfinite(lives).all()
+    assert (np.diff(lives, axis=0) <= 0).all()

@@ -127,6 +127,16 @@ def test_temperatures_of_the_run_are_used() -> None:
     assert plateau.element_km[hottest] < course.element_km[hottest]
 
 
+@pytest.mark.parametrize("plateau", [False, True])
+def test_an_interrupted_run_has_no_life(plateau: bool) -> None:
+    """The phases that it did not reach have no temperatures."""
+    study = tyre()
+    result = study.run()
+    part = replace(result.history, times=result.times[:5], values=result.history.values[:5], interrupted=True)
+    with pytest.raises(InputError, match=r"result: the run ends at .* s of 60 s"):
+        life(study, result=replace(result, history=part), plateau=plateau)
+
+
 @pytest.mark.parametrize("size", ["8 mm", "10 mm"])
 def test_temperatures_are_known_where_the_meshes_differ(size: str) -> None:
     """Straight edges of the mechanical mesh lie up to their sagitta beyond the hollow side of the section."""

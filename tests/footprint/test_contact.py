@@ -251,6 +251,16 @@ def test_a_slight_deflection_is_not_without_load(tyre: Pressing) -> None:
     assert tyre.solve(deflection=0.0).load == 0.0
 
 
+@pytest.mark.parametrize(("name", "given", "words"), [("load", 1e-3, "0.001 N"), ("deflection", 1e-4, "0.1 mm")])
+def test_a_slight_contact_without_convergence_names_the_load(
+    tyre: Pressing, name: str, given: float, words: str
+) -> None:
+    """A drive has no key 'tolerance'."""
+    with pytest.raises(InputError, match=f"{words}: 270 harmonics leave an error of") as caught:
+        tyre.solve(**{name: given}, tolerance=1e-4)
+    assert caught.value.field == name
+
+
 def test_a_load_too_slight_to_resolve_is_not_called_too_heavy(tyre: Pressing) -> None:
     with pytest.raises(InputError, match="does not settle under 1e-06 N with 24 harmonics") as caught:
         tyre.at_load(1e-6, 24)

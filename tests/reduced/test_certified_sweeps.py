@@ -25,7 +25,7 @@ from tyrefem.simulation.simulate import output_times
 from tyrefem.sweep.sweep import Sweep, sweep
 from tyrefem.variants.answers import answers
 from tyrefem.variants.execution import SweepSettings
-from tyrefem.variants.outcomes import Answered
+from tyrefem.variants.outcomes import Answered, NotReducible
 from tyrefem.variants.plan import Plan, plan_of
 from tyrefem.variants.task import perform
 
@@ -181,6 +181,16 @@ def test_outside_its_box_it_is_not_asked(trained: Surrogate, tyre: Study) -> Non
     # A number that the study does not have.
     deflected = trained.answers([inside.replace({"drive.load": None, "drive.deflection": "20 mm"})])[0]
     assert deflected.reason.startswith("drive.load: not set in the study")
+
+
+def test_a_variant_hotter_than_the_table_of_tan_delta_is_left_to_a_full_run(trained: Surrogate, tyre: Study) -> None:
+    """Beyond the table tan delta is constant: a thermal runaway would have an end."""
+    warm, hot = (tyre.replace({"drive.initial": f"{T} degC", "drive.ambient": f"{T} degC"}) for T in (60, 420))
+    (_, inside), (_, beyond) = reduced_outcomes(trained.model, [warm, hot])
+    assert isinstance(inside, Variant)
+    reason = "the table of tan delta ends at 400 degC, and its hottest point has 42"
+    assert isinstance(beyond, NotReducible)
+    assert beyond.reason.startswith(reason)
 
 
 def test_another_mesh_is_refused(trained: Surrogate, tyre: Study) -> None:

@@ -195,3 +195,11 @@ def test_round_shells_stand_for_a_doubly_curved_crown() -> None:
     assert max(misses[0]) < 0.2
     assert misses[1][0] > 3 * misses[0][0]
     assert misses[1][0] > 0.4
+
+
+@pytest.mark.parametrize("spot", [7.5e-3, 15e-3, 19e-3])
+def test_nodes_that_are_even_but_for_rounding(spot: float) -> None:
+    """Beyond the spot of a patch 2.35 times as wide."""
+    edge = spot / 2
+    length, first = float(f"{2.35 * edge * 1e3:.6g}") * 1e-3 - edge, 0.6 * edge / 4
+    np.testing.assert_allclose(graded(length, 9, first), np.linspace(0.0, length, 10), rtol=1e-6)

@@ -292,10 +292,20 @@ def test_optimum_of_listed_values_tries_every_combination_once(tyre: Study) -> N
     box = {"drive.speed": ["10 m/s", "11 m/s", "12 m/s"], "drive.ambient": ["10 degC", "20 degC"]}
     plan = plan_of(tyre, box, optimise={"maximise": "hottest_degC"})
     scheduler = Formula(lambda x: x[0] * x[1])
-    answer = optimum(plan, OptimiseCard(maximise="hottest_degC"), scheduler=scheduler, reduced="never")
+    # Six variants are too few to train a reduced model for, whatever the search may run.
+    answer = optimum(plan, OptimiseCard(maximise="hottest_degC"), scheduler=scheduler, reduced="auto")
     assert answer.exhaustive
+    assert answer.swept.certificate is None
     assert answer.changes == {"drive.speed": "12 m/s", "drive.ambient": "20 degC"}
     assert scheduler.asked == 6 + 1  # and the study as it is
+
+
+def test_an_optimum_of_failures_alone_speaks_of_no_limits(tyre: Study) -> None:
+    plan = plan_of(tyre, {"drive.speed": ["10 m/s", "11 m/s"]}, optimise={"minimise": "hottest_degC"})
+    failing = Formula(lambda x: math.inf)
+    answer = optimum(plan, OptimiseCard(minimise="hottest_degC"), scheduler=failing, reduced="never")
+    expected = "Smallest highest temperature: no variant has a number (2 different variants evaluated, 2 failed)."
+    assert answer.words == [expected]
 
 
 def test_a_search_passes_over_failures_and_mixes_lists_with_ranges(tyre: Study) -> None:

@@ -22,7 +22,8 @@ from tyrefem.sweep.pareto import front
 from tyrefem.sweep.responses import words
 from tyrefem.sweep.sweep import Sweep
 from tyrefem.variants import answers
-from tyrefem.variants.card import LimitCard, OptimiseCard
+from tyrefem.variants.answer_units import shown
+from tyrefem.variants.card import LimitCard, OptimiseCard, VaryCard
 from tyrefem.variants.outcomes import Answered, Failed
 from tyrefem.variants.plan import Plan
 
@@ -88,6 +89,32 @@ def test_a_variant_without_the_answer_is_passed_over() -> None:
     search.record(other, "lost_rim film_share")
     assert search.settled
     assert search.failure == "no answer 'lost_rim film_share'"
+
+
+def test_a_share_of_no_heat_is_neither_large_nor_small() -> None:
+    """A tyre that stands has no heat, so no share of it: it keeps no limit and is the best in nothing."""
+    share = "lost_rim_share"
+    plan = listed({"drive.speed": 0.0}, {"drive.speed": 1.0}, {"drive.speed": 2.0}, **{share: LimitCard(above=0.1)})
+    shares = {0: math.nan, 1: 0.2, 2: 0.3}
+    outcomes = {n: Answered({share: value, "hottest_degC": 25.0 + n}) for n, value in shares.items()}
+    swept = Sweep(plan, outcomes)
+    assert swept.table["feasible"].tolist() == [False, True, True]
+    assert [violation(outcome, plan.limits) > 0 for outcome in outcomes.values()] == [True, False, False]
+    for card in (OptimiseCard(maximise=share), OptimiseCard(minimise=share)):
+        assert objective(outcomes[0], card) == math.inf
+    unlimited = Sweep(listed(*plan.variants), outcomes)
+    assert front(unlimited.overview((share,)), {share: "max"})["variant"].tolist() == ["3"]
+    sentence = words(unlimited, (share,))[0]
+    assert sentence == "Lost rim share: from 0.2 (variant 2) to 0.3 (variant 3)."
+    assert shown(share, math.nan) == "none"
+    search = SpeedSearch(1.0, 60.0, 90.0)
+    search.record(outcomes[0], share)
+    assert (search.settled, search.failure) == (True, "no number for 'lost_rim_share'")
+
+
+def test_a_factor_without_end_is_refused() -> None:
+    with pytest.raises(InputError, match="two rising positive numbers"):
+        VaryCard.check({"factor": [1.0, math.inf]})
 
 
 def test_a_sensor_with_brackets_in_its_name_has_answers(monkeypatch: pytest.MonkeyPatch) -> None:

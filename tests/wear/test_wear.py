@@ -234,6 +234,10 @@ def test_a_tread_that_is_worn_through_is_refused() -> None:
     most = float(caught.value.message.split(": ")[1].split(" km")[0].replace(",", ""))
     last = section_of((worn_section(study, wear, most - 1), Path("worn.toml"), "worn"))
     assert last.layers[-1].thickness(np.linspace(0.0, 0.0775, 400)).min() == pytest.approx(0.5e-3, abs=1e-4)
+    # Hard cornering wears more than the radius of the wheel in some thousand km.
+    for kilometres in (3e7, 1e12):
+        with pytest.raises(InputError, match=rf"worn through .* {round(most):,d} km leave 0\.5 mm"):
+            worn_section(study, wear, kilometres)
 
 
 @pytest.mark.fast

@@ -113,7 +113,7 @@ def compare(
         first, last = computed.readings["time_s"].iloc[[0, -1]]
         notes += outside_note(experiment, first, last, outside)
     if not all_histories:
-        raise InputError("no measured time is within the simulated span: " + "; ".join(notes))
+        raise InputError("; ".join(["no sensor has a reading within the simulated span", *notes]))
     if isinstance(study, StudyData):
         notes += start_notes(study, planned)
     notes += [

@@ -100,7 +100,8 @@ class HeatBalance(System):
         self.show(y.g)
         if any(load.stale(t, y) for load in self._watched):
             return True
-        if self.variable_reservoirs and np.any(np.abs(self.reservoir_capacity(y.g) / self.C - 1) > 0.2):
+        # A massless reservoir has none to divide by.
+        if self.variable_reservoirs and np.any(np.abs(self.reservoir_capacity(y.g) - self.C) > 0.2 * self.C):
             return True
         if not self.variable_capacity:
             return False

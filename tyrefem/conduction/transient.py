@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -23,6 +24,12 @@ Array = NDArray[Any]
 # Local error allowed per kelvin of tolerance; with it the global error stays within the tolerance.
 _SHARE = 0.25
 _RUNG = 2.0 ** (2 / 3)
+#: Breakpoints that differ by this share of the latest time are one: they differ by rounding.
+SAME_TIME = 1e-12
+#: degC, far above all solids: a run that gets there has no solution.
+HOTTEST = 1e6
+#: K/s times the length of a phase: a faster rise is a runaway.
+RUNAWAY = 1e6
 
 
 class Integration:
@@ -44,8 +51,8 @@ class Integration:
     ) -> None:
         self.balance, self.times, self.y, self.tally = balance, times, y, tally
         self.goal, self.max_step = _SHARE * tolerance, max_step
-        inner = breakpoints[(breakpoints > times[0]) & (breakpoints < times[-1])]
-        self.ends = np.unique(np.concatenate((times[:1], inner, times[-1:])))
+        #: Breakpoints in order, each as (time, first, last): of those that are one, the first and the last.
+        self.breaks = _breaks(float(times[0]), float(times[-1]), breakpoints)
         self.matrices = StageMatrices()
         self.accepted = self.rejected = 0
         self.values: list[Array] = []
@@ -61,13 +68,18 @@ class Integration:
 
     def run(self, progress: Callable[[float], None] | None) -> None:
         """Integrate phase after phase."""
-        for first, last in zip(self.ends[:-1], self.ends[1:], strict=True):
-            self._phase(float(first), float(last), progress)
+        for begin, end in pairwise(self.breaks):
+            first, last = begin[0], end[0]
+            rounding = 4 * float(np.spacing(max(abs(first), abs(last))))
+            inside = max(1e-10 * (last - first), rounding)
+            low, high = max(first + inside, begin[2] + rounding), min(last - inside, end[1] - rounding)
+            self._phase(first, last, low, high, progress)
 
-    def _phase(self, first: float, last: float, progress: Callable[[float], None] | None) -> None:
+    def _phase(
+        self, first: float, last: float, low: float, high: float, progress: Callable[[float], None] | None
+    ) -> None:
+        """Integrate from ``first`` to ``last``, with data from ``low`` to ``high``, s."""
         b = self.balance
-        inside = max(1e-10 * (last - first), 4 * np.spacing(max(abs(first), abs(last))))
-        low, high = first + inside, last - inside
         self._low = low
         self._jump(low)
         b.balance_massless(low, self.y.u, self.y.g)
@@ -87,7 +99,8 @@ class Integration:
                 self.rejected += 1
                 h = h_now * max(0.1, min(factor, 0.8)) if math.isfinite(error) else 0.1 * h_now
                 if h < 1e-13 * max(abs(t), last - first):
-                    raise SolverError(f"the time step vanished at t = {t:.6g} s (error estimate {error:.3g} K)")
+                    message = f"the time step vanished at t = {t:.6g} s (error estimate {error:.3g} K)"
+                    raise SolverError(self._runaway(step, last - first) or message)
                 continue
             # A growth by one ladder step does not repay its factorisation: wait until two are possible.
             grown = h_now * (min(4.0, factor) if not 1 <= factor < _RUNG**2 else 1.0)
@@ -95,10 +108,17 @@ class Integration:
             t_new = last if h_now == remaining else t + h_now
             self._accept(step, t, t_new, min(t_new, high))
             t = t_new
+            if self.y.u.max() > HOTTEST:
+                raise SolverError(_runaway_at(t, float(self.y.u.max())))
             if progress is not None:
                 progress(t)
             if t < last and b.stale(min(max(t, low), high), self.y):
                 b.freeze(min(max(t, low), high), self.y)
+
+    def _runaway(self, step: Step, span: float) -> str:
+        """Why the step vanished, if temperatures rise without bound in a phase of so many s; else empty."""
+        rise = float(np.max(step.ku[0], initial=0.0))
+        return _runaway_at(step.t, float(step.y.u.max())) if rise * span > RUNAWAY else ""
 
     @staticmethod
     def _ladder_step(h: float) -> float:
@@ -182,3 +202,29 @@ class Integration:
         """Hottest point of the body, then of every region."""
         x = self.balance.ops.points
         return [Peak(T, (float(x[0, i]), float(x[1, i])), t) for T, i, t in self._peaks]
+
+
+def _breaks(start: float, end: float, breakpoints: Array) -> list[tuple[float, float, float]]:
+    """Start, breakpoints between, and end of a run, each as (time, first, last) of those that are one, s."""
+    close = SAME_TIME * max(abs(start), abs(end))
+    breaks = [(start, start, start)]
+    for time in np.unique(breakpoints[(breakpoints > start) & (breakpoints < end)]).tolist():
+        kept, first, last = breaks[-1]
+        if time - last <= close:
+            breaks[-1] = kept, first, time
+        else:
+            breaks.append((time, time, time))
+    kept, first, last = breaks[-1]
+    if len(breaks) > 1 and end - last <= close:
+        breaks[-1] = end, first, end
+    else:
+        breaks.append((end, end, end))
+    return breaks
+
+
+def _runaway_at(time: float, hottest: float) -> str:
+    """The error of temperatures that rise without bound."""
+    return (
+        f"temperatures rise without bound at t = {time:.6g} s (hottest point {hottest:.4g} degC): a thermal runaway, "
+        "or far too much heat; check heat sources, and tan delta that rises with temperature"
+    )

@@ -67,13 +67,14 @@ def cycles_to_failure(
         ends = np.log(last / fatigue.flaw)
         power = 1 - exponent
         # (c_1^(1-F) - c_0^(1-F)) / (1 - F) = c_0^(1-F) expm1((1-F) ln(c_1/c_0)) / (1-F), smooth through F = 1.
+        # c_0^(1-F) / a^F = c_0 / (a c_0)^F: a c_0 is below 1, so that large exponents stay numbers.
         integral = np.where(
             np.abs(power) < NEAR_ONE,
             ends,
-            fatigue.flaw**power * np.expm1(power * ends) / np.where(np.abs(power) < NEAR_ONE, 1.0, power),
+            np.expm1(power * ends) / np.where(np.abs(power) < NEAR_ONE, 1.0, power),
         )
         rate = fatigue.growth_rate * temperature_factor(fatigue, temperature)
-        cycles = np.maximum(integral, 0.0) / (rate * slope**exponent)
+        cycles = fatigue.flaw * np.maximum(integral, 0.0) / (rate * (slope * fatigue.flaw) ** exponent)
     grows = slope * fatigue.flaw * fatigue.tearing_energy > fatigue.threshold
     lasting = np.where(grows, cycles, LONGEST)
     return np.asarray(np.minimum(np.where(last <= fatigue.flaw, 0.0, lasting), LONGEST))

@@ -146,8 +146,8 @@ def life(
 
     Raises
     ------
-    InputError : a temperature with a run or its plateau; a campaign; a strain law without strains at points; no card
-        with ``[fatigue]``; a tyre that never rolls; errors of a run.
+    InputError : a temperature with a run or its plateau; an interrupted run; a campaign; a strain law without strains
+        at points; no card with ``[fatigue]``; a tyre that never rolls; errors of a run.
     """
     check(study)
     if temperature is not None and (plateau or result is not None):
@@ -164,6 +164,10 @@ def life(
             from tyrefem.simulation.run import run
 
             result = run(study, progress)
+        last, end = float(result.times[-1]), study.card.drive.end
+        if last < end * (1 - 1e-9):
+            words = f"the run ends at {last:g} s of {end:g} s: a life needs a run of the whole drive"
+            raise InputError(words, field="result")
         duty = Duty.of_run(result, plateau=plateau)
     cycles = duty.cycles()
     if not cycles:

@@ -40,7 +40,8 @@ def graded(length: float, count: int, first: float) -> Array:
         return np.linspace(0.0, length, count + 1)
     from scipy.optimize import brentq
 
-    ratio = brentq(lambda q: first * (q**count - 1) / (q - 1) - length, 1 + 1e-9, length / first)
+    # As a sum of powers, which also holds near the ratio 1.
+    ratio = brentq(lambda q: first * float((q ** np.arange(count)).sum()) - length, 1.0, length / first)
     nodes = np.concatenate([[0.0], first * np.cumsum(ratio ** np.arange(count))])
     return np.asarray(nodes * (length / nodes[-1]))
 

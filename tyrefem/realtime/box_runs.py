@@ -78,6 +78,9 @@ def perform_skin(task: SettingTask) -> Snapshots | Failed:
             start + SKIN[0.5 * phase.duration > SKIN] for start, phase in zip(drive.starts, drive.phases, strict=True)
         ]
         times = np.unique(np.concatenate([[0.0], *after]))
+        if len(times) == 1:
+            # All phases are shorter than the first of these times.
+            times = np.array([0.0, drive.end / 2])
         history = tyre.problem.transient(
             times, drive.initial, SKIN_TOLERANCE, breakpoints=[t for t in drive.starts[1:] if t < times[-1]]
         )

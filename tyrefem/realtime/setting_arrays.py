@@ -16,6 +16,8 @@ from tyrefem.realtime.tables import Probe, Tables
 from tyrefem.reduced.balance import reduced_balance
 from tyrefem.reduced.model import ReducedModel
 from tyrefem.simulation.heat_budget import NAMES as FILM_NAMES
+from tyrefem.simulation.rolling_tyre import RollingTyre
+from tyrefem.simulation.simulate import output_times
 from tyrefem.simulation.surroundings import RIM
 from tyrefem.variants.varied import Varied
 
@@ -67,6 +69,7 @@ def setting_arrays(
         "zone_power": whole * _by_region(model, tyre),
         "speeds": tables.axes["speed"],
         "durations": inputs.durations,
+        "last_readings": last_readings(model.base),
         "input_constant": inputs.constant,
         "input_slopes": inputs.slopes,
         "low": inputs.low,
@@ -110,6 +113,13 @@ def step_arrays(inputs: DriveInputs, fineness: int) -> dict[str, Array]:
         lengths += of_phase
         phases += [float(number)] * len(of_phase)
     return {"step_lengths": np.array(lengths), "step_phases": np.array(phases)}
+
+
+def last_readings(tyre: RollingTyre) -> Array:
+    """(n_phases,) time of the last reading before the end of every phase, s; its start if there is none."""
+    times, _ = output_times(tyre)
+    ends = [*tyre.drive.starts[1:], tyre.drive.end]
+    return np.array([times[max(int(np.searchsorted(times, end - 1e-6)) - 1, 0)] for end in ends])
 
 
 def heated_regions(model: ReducedModel, tyre: Any) -> list[str]:

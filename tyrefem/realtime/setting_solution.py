@@ -117,19 +117,29 @@ class Solution:
 
     @functools.cached_property
     def rolling_time(self) -> float:
-        """End of the rolling phase with most heat, s: there the rolling resistance is stated."""
+        """End of the rolling phase with most heat, s: there the rolling resistance is stated.
+
+        Of a phase that ends at rest or off the road it is the last reading before its end, as in a run.
+        """
         best, time = -1.0, 0.0
         ends = [*self.first[1:], len(self.times) - 1]
-        phases = zip(self.first, ends, self.coefficients.inputs, self.tyre.durations, strict=True)
-        rolling = [phase for phase in phases if phase[2][1, 0] >= STANDSTILL and phase[2][1, 1] > 0]
-        for low, high, (start, end), duration in rolling:
+        rolling = []
+        for number, (low, high) in enumerate(zip(self.first, ends, strict=True)):
+            inputs = self.coefficients.inputs[number]
+            if not (inputs[:, 0].max() >= STANDSTILL and inputs[:, 1].max() > 0):
+                continue
+            stops = inputs[1, 0] < STANDSTILL or inputs[1, 1] <= 0
+            stated = float(self.tyre.arrays["last_readings"][number] if stops else self.times[high])
+            if stated > self.times[low] + 1e-6:
+                rolling.append((low, high, inputs, self.tyre.durations[number], stated))
+        for low, high, (start, end), duration, stated in rolling:
             if len(rolling) == 1:
-                return float(self.times[high])
+                return stated
             powers = []
             for i in range(low, high + 1):
                 now = start + (end - start) * ((self.times[i] - self.times[low]) / duration)
                 powers.append(float(self.coefficients.generated(self.states[i], now).sum()))
             heat = float(np.trapezoid(powers, self.times[low : high + 1]))
             if heat > best:
-                best, time = heat, float(self.times[high])
+                best, time = heat, stated
         return time

@@ -13,6 +13,7 @@ from tyrefem.reduced.integration import integrate
 from tyrefem.reduced.learnt_balance import learnt_balances
 from tyrefem.reduced.model import NotReducibleError, ReducedModel
 from tyrefem.reduced.readout import Readout
+from tyrefem.reduced.sampled_source import HOT
 from tyrefem.reduced.shaped_model import fill
 from tyrefem.reduced.solution import BatchSolution
 from tyrefem.reduced.variant import Variant
@@ -80,7 +81,12 @@ def _variants(
             continue
         readout = Readout(part, output_times(part.batch.balances[0].alike)[0])
         for place, number in enumerate(numbers):
-            yield number, Variant(readout, place)
+            hottest = readout.peaks[place]["tyre"].temperature
+            if hottest > HOT:
+                why = f"the table of tan delta ends at {HOT:g} degC, and its hottest point has {hottest:.0f} degC"
+                yield number, NotReducible(why)
+            else:
+                yield number, Variant(readout, place)
 
 
 def batch_solutions(

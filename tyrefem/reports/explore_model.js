@@ -508,17 +508,23 @@ class Solution {
     return values;
   }
 
-  /* End of the rolling phase with most heat: there the rolling resistance is stated. */
+  /* End of the rolling phase with most heat: there the rolling resistance is stated. Of a phase that ends at rest or
+     off the road it is the last reading before its end. */
   rollingTime() {
     let best = -1, time = 0;
     const n = this.tyre.count, c = this.coefficients, durations = this.tyre.arrays.durations;
-    const numbers = this.first.map((_, number) => number).filter((number) => {
-      const end = c.inputsAt(number, durations[number]);
-      return end[0] >= STANDSTILL && end[1] > 0;
+    const highOf = (number) => number + 1 < this.first.length ? this.first[number + 1] : this.times.length - 1;
+    const rolling = [];
+    this.first.forEach((low, number) => {
+      const start = c.inputsAt(number, 0), end = c.inputsAt(number, durations[number]);
+      if (!(Math.max(start[0], end[0]) >= STANDSTILL && Math.max(start[1], end[1]) > 0)) return;
+      const stops = end[0] < STANDSTILL || end[1] <= 0;
+      const stated = stops ? this.tyre.arrays.last_readings[number] : this.times[highOf(number)];
+      if (stated > this.times[low] + 1e-6) rolling.push([number, stated]);
     });
-    for (const number of numbers) {
-      const low = this.first[number], high = number + 1 < this.first.length ? this.first[number + 1] : this.times.length - 1;
-      if (numbers.length === 1) return this.times[high];
+    for (const [number, stated] of rolling) {
+      const low = this.first[number], high = highOf(number);
+      if (rolling.length === 1) return stated;
       let heat = 0, before = 0;
       for (let i = low; i <= high; i++) {
         const inputs = c.inputsAt(number, this.times[i] - this.times[low]);
@@ -526,7 +532,7 @@ class Solution {
         if (i > low) heat += (power + before) / 2 * (this.times[i] - this.times[i - 1]);
         before = power;
       }
-      if (heat > best) { best = heat; time = this.times[high]; }
+      if (heat > best) { best = heat; time = stated; }
     }
     return time;
   }

@@ -150,6 +150,9 @@ class SpeedSearch:
             self.failure, self.settled, self._speed = reason, True, math.nan
             return
         value = float(outcome.answers[answer])
+        if math.isnan(value):
+            self.failure, self.settled, self._speed = f"no number for '{answer}'", True, math.nan
+            return
         if math.isnan(self.at_low):
             self.at_low = self.value = value
             self.settled = value >= self.limit

@@ -19,7 +19,7 @@ from tyrefem.sweep.evaluation import Evaluator
 from tyrefem.sweep.part import InSentences
 from tyrefem.sweep.sweep import Sweep
 from tyrefem.variants.answer_units import difference_unit, name_of, shown
-from tyrefem.variants.answers import NEVER, check_answer
+from tyrefem.variants.answers import check_answer, comparable
 from tyrefem.variants.card import LimitCard, OptimiseCard
 from tyrefem.variants.execution import Execution, ExecutionOptions
 from tyrefem.variants.outcomes import Answered, Failed, Outcome
@@ -126,11 +126,12 @@ def _variant(varied: Sequence[Varied], x: Array) -> dict[str, Any]:
 
 
 def objective(outcome: Outcome, card: OptimiseCard) -> float:
-    """The number to minimise; a time that is not reached is the longest, a failure or no such answer is infinite."""
+    """The number to minimise; a time that is not reached is the longest, a failure or no such number is infinite."""
     if isinstance(outcome, Failed) or card.answer not in outcome.answers:
         return math.inf
-    value = float(outcome.answers[card.answer])
-    value = NEVER if math.isnan(value) else value
+    value = comparable(card.answer, outcome.answers[card.answer])
+    if math.isnan(value):
+        return math.inf
     return value if card.minimise else -value
 
 
@@ -146,8 +147,10 @@ def violation(outcome: Outcome, limits: Mapping[str, LimitCard], margins: Mappin
         return FAILED if limits else 0.0
     total = 0.0
     for name, limit in limits.items():
-        value = float(outcome.answers[name])
-        value = NEVER if math.isnan(value) else value
+        value = comparable(name, outcome.answers[name])
+        if math.isnan(value):
+            total += FAILED
+            continue
         margin = (margins or {}).get(name, 0.0) if outcome.by == "reduced" else 0.0
         total += 0.0 if limit.below is None else _beyond(value + margin, limit.below)
         total += 0.0 if limit.above is None else _beyond(margin - value, -limit.above)
@@ -232,7 +235,8 @@ class Optimum(InSentences):
         count = f"{counted(self.evaluated, 'different variant')} evaluated"
         tried = count + (f", {failed} failed" if failed else "")
         if self.best is None:
-            return [f"{heading}: no variant keeps the limits ({tried})."]
+            why = "no variant keeps the limits" if plan.limits else "no variant has a number"
+            return [f"{heading}: {why} ({tried})."]
         sentences = [f"{heading}: {shown(self.answer, self.full[self.answer])} at {self.where}, by a full run."]
         others = [name for name in plan.limits if name != self.answer]
         if others:
@@ -301,11 +305,10 @@ def optimum(
     with Evaluator(plan, execution) as evaluate:
         nominal = Evaluator(plan, Execution(execution.scheduler))([{}])[0]
         _check_there(nominal, (card.answer, *plan.limits))
-        evaluate.train(card.runs)
-        exhaustive = (
-            all(number.values for number in plan.varied)
-            and math.prod(len(number.values) for number in plan.varied) <= card.runs
-        )
+        listed = all(number.values for number in plan.varied)
+        combinations = math.prod(len(number.values) for number in plan.varied)
+        exhaustive = listed and combinations <= card.runs
+        evaluate.train(combinations if exhaustive else card.runs)
         if exhaustive:
             evaluate(Grid(plan.varied))
             ended = ""
@@ -356,7 +359,8 @@ def _verified(evaluate: Evaluator, card: OptimiseCard) -> tuple[int | None, Mapp
     limits = evaluate.plan.limits
     outcomes = evaluate.outcomes
     answered = [n for n, outcome in outcomes.items() if isinstance(outcome, Answered)]
-    feasible = [n for n in answered if violation(outcomes[n], limits, evaluate.margins) == 0]
+    numbered = [n for n in answered if objective(outcomes[n], card) < math.inf]
+    feasible = [n for n in numbered if violation(outcomes[n], limits, evaluate.margins) == 0]
     for n in sorted(feasible, key=lambda n: (objective(outcomes[n], card), n))[:CANDIDATES]:
         (full,) = evaluate([evaluate.variants[n]], full=True)
         if isinstance(full, Answered) and violation(full, limits) == 0:

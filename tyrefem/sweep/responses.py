@@ -122,7 +122,8 @@ def words(sweep: Sweep, wanted: tuple[str, ...] = ()) -> list[str]:
         if len(effects):
             unit = difference_unit(answer)
             moved = "; ".join(_moved(row, unit) for row in effects.to_dict("records"))
-            some = ", where it is reached" if table[answer].isna().any() else ""
+            where = ", where it is reached" if answer == TIME_TO else ", where there is one"
+            some = where if table[answer].isna().any() else ""
             sentences.append(f"Main effects on the {name_of(answer)}, averaged over the others{some}: {moved}.")
         elif numbers := [varied.label for varied in sweep.plan.varied if varied.heading in table]:
             count = f"{len(table)} variants do not tell {len(numbers)} numbers apart"
@@ -136,8 +137,9 @@ def _moved(row: Mapping[Any, Any], unit: str) -> str:
 
 
 def extreme(table: pd.DataFrame, answer: str, *, least: bool) -> Mapping[str, Any]:
-    """The row with the smallest or largest answer; a time that is not reached is the largest."""
-    values = table[answer].fillna(NEVER).to_numpy(dtype=float)
+    """The row with the smallest or largest answer; a time that is not reached is the largest, of others NaN is none."""
+    without = NEVER if answer == TIME_TO else np.inf if least else -np.inf
+    values = table[answer].fillna(without).to_numpy(dtype=float)
     place = int(values.argmin() if least else values.argmax())
     return {str(name): value for name, value in table.iloc[place].items()}
 

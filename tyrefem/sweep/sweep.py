@@ -164,7 +164,7 @@ class Sweep(Brief):
                 within &= values < limit.below
             if limit.above is not None:
                 # A time that is not reached (NaN) is later than any.
-                within &= ~(values <= limit.above)
+                within &= (values > limit.above) | ((name == TIME_TO) & np.isnan(values))
         return within
 
     @functools.cached_property

@@ -30,13 +30,15 @@ WORDS = {
 
 
 def shown(name: str, value: float, digits: int = 4) -> str:
-    """An answer as text with its unit; NaN (a temperature that was not reached) is "never".
+    """An answer as text with its unit; NaN is "never" as a time, else "none", as the share of a boundary in no heat.
 
     >>> shown("hottest_degC", 81.234), shown("rolling_resistance_coefficient", 0.01)
     ('81.23 °C', '0.01')
+    >>> shown("time_to_limit_s", float("nan")), shown("lost_rim_share", float("nan"))
+    ('never', 'none')
     """
     if value != value:
-        return "never"
+        return "never" if name.endswith("_s") else "none"
     number = f"{value:.{digits}g}"
     return f"{number} {unit_of(name)}".strip()
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import fnmatch
 import functools
+import math
 from collections.abc import Callable, Iterable, Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
@@ -89,6 +90,15 @@ def answers(
     for function, _ in _FUNCTIONS:
         values |= known[function.__name__] if function.__name__ in known else function(result, time_to)
     return values
+
+
+def comparable(name: str, value: float) -> float:
+    """An answer as a number to compare: a time that is not reached is `NEVER`; others without a number stay NaN.
+
+    >>> comparable("time_to_limit_s", math.nan), comparable("lost_rim_share", math.nan), comparable("mass_kg", 9)
+    (1000000000.0, nan, 9.0)
+    """
+    return NEVER if name == TIME_TO and math.isnan(value) else float(value)
 
 
 def answer_names(study: StudyData, time_to: float | None = None) -> list[str]:

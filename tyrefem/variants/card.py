@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Mapping
 from pathlib import Path
@@ -48,7 +49,7 @@ class VaryCard(Card):
         unused = {"levels", "scale"} & self.model_fields_set
         if self.values is not None and unused:
             raise InputError("goes with a range or a factor, not with 'values'", field=min(unused))
-        if self.factor is not None and not 0 < self.factor[0] < self.factor[1]:
+        if self.factor is not None and not 0 < self.factor[0] < self.factor[1] < math.inf:
             raise InputError(f"must be two rising positive numbers, not {list(self.factor)}", field="factor")
         return self
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -97,6 +98,11 @@ class WornFace:
 
         return float(brentq(lambda km: self.kilometres(km) - kilometres, 0.0, kilometres, xtol=1e-9 * kilometres))
 
+    def through(self, thickness: float) -> float:
+        """Distance, km, by which a layer of a thickness, m, is worn through; beyond it shapes have no meaning."""
+        deepest = float(self.profile.depth.max())
+        return self.kilometres(2 * thickness / deepest) if deepest > 0 else math.inf
+
     def depth(self, s: Array, ring_km: float) -> Array:
         """Depth at stations, m, where the rings wear as by ``ring_km`` without a shoulder."""
         beyond = self.shoulder.depth(s, ring_km * float(self.profile.depth[-1]))
@@ -133,7 +139,7 @@ def worn_section(study: StudyData, wear: RingWear, kilometres: float) -> dict[st
         )
         raise InputError(message, field="section.line.reference", file=study.file)
     worn, outer = WornFace.of(section, wear), section.layers[-1]
-    ring_km = worn.ring_kilometres(kilometres)
+    ring_km = worn.ring_kilometres(min(kilometres, worn.through(float(np.max(outer.thickness.values)))))
     table = np.asarray(outer.thickness.s)
     _check_left(worn, np.union1d(table, worn.everywhere), outer, ring_km)
     # Stations less than 10 micrometres apart are one.
@@ -165,10 +171,11 @@ def _check_left(worn: WornFace, s: Array, outer: Layer, ring_km: float) -> None:
     from scipy.optimize import brentq
 
     rubber = outer.thickness(s) - LEFT
+    most_rubber = max(float(rubber.max()), 0.0)
 
     def left(km: float) -> Array:
         depth = worn.depth(s, km)
-        return np.where(depth > 0, rubber - depth, rubber.max())
+        return np.where(depth > 0, rubber - depth, most_rubber)
 
     lacking = left(ring_km)
     if lacking.min() < 0:

@@ -191,9 +191,11 @@ class Pressing(TyreOnRoad):
                 f"{before.deflection * 1e3:.4g} mm is too little: {LADDER[-1]} harmonics find no contact",
                 field="deflection",
             )
+        given = f"{before.deflection * 1e3:.4g} mm" if load is None else f"{load:.4g} N"
         raise InputError(
-            f"{LADDER[-1]} harmonics leave an error of {before.error:.2g}, more than the tolerance {tolerance:g}",
-            field="tolerance",
+            f"{given}: {LADDER[-1]} harmonics leave an error of {before.error:.2g}, more than the tolerance "
+            f"{tolerance:g}; a slight contact needs more harmonics: state a larger one, or 0",
+            field="deflection" if load is None else "load",
         )
 
 
