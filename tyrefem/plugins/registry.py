@@ -131,8 +131,13 @@ def _registry(values: tuple[str, str, str], received: tuple[str, ...] | None) ->
     finally:
         _loading = False
     plugins: list[Plugin] = []
-    for module in modules:
+    known: set[type] = set()
+    # Packages before files: a class of a package that a file imports, to extend it, stays the package's.
+    for module in sorted(modules, key=lambda module: module.origin.file is not None):
         for cls in module.classes:
+            if cls in known:
+                continue
+            known.add(cls)
             judged = _judged(cls, module.origin, plugins)
             if isinstance(judged, Plugin):
                 plugins.append(judged)
