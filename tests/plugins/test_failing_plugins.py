@@ -288,3 +288,69 @@ def test_a_folder_with_the_separator_of_paths_in_its_name_is_refused_in_words(fo
     for name in (use, use_effects):
         with pytest.raises(tf.InputError, match="which separates the folders in TYREFEM_PLUGINS"):
             name(place)
+
+
+IN_PLACE = {
+    "effect": ("return self.shine", "x += 0.0"),
+    "tan-delta-law": ("kelvin = np", "temperature += 0.0; kelvin = np"),
+    "friction-law": ("warm = np", "speed += 0.0; warm = np"),
+    "strain-law": ("return (CROWN", "points += 0.0; return (CROWN"),
+}
+
+
+@pytest.mark.parametrize("kind", IN_PLACE)
+def test_an_array_that_a_method_is_given_cannot_be_changed_in_place(write: Write, kind: str) -> None:
+    """The solver's temperatures were shifted for the effects that came after: 5 K too hot, by their order."""
+    file = write(kind, IN_PLACE[kind])
+    with pytest.raises(tf.InputError, match=r"read-only \(line \d+\)") as caught:
+        study(USES[kind]).run()
+    assert str(file) in str(caught.value)
+
+
+CLASSES = {
+    "surface": ('("outside_air",)', '("outside-air",)', "unknown surface 'outside-air'; did you mean 'outside_air'"),
+    "text": ('("outside_air",)', '("outside_air")', "'surfaces' must be a tuple of names"),
+    "jump": ("    # Unit,", "    jumps: ClassVar = 5.0\n    # Unit,", "'jumps' must be a tuple of times in seconds"),
+    "jumps": ("    # Unit,", "    jumps: ClassVar = [5.0]\n    # Unit,", "'jumps' must be a tuple of times in seconds"),
+    "no unit": ('"W/m**2"', '""', "parameter 'shine' needs a unit"),
+    "no such unit": ('"W/m**2"', '"W/mm**2/x"', "parameter 'shine': unknown unit 'W/mm"),
+}
+
+
+@pytest.mark.parametrize("fault", CLASSES)
+def test_a_class_that_would_do_nothing_is_left_out_in_words(write: Write, fault: str) -> None:
+    old, new, words = CLASSES[fault]
+    write("effect", (old, new))
+    with pytest.warns(PluginWarning, match=words):
+        assert registry().plugins == ()
+
+
+def test_a_factor_for_another_number_of_temperatures_names_the_plugin(write: Write) -> None:
+    """Three, as many as the trial has: a traceback of the solver."""
+    port = "def capacity_factor(self, tyre, region, T):\n        return [1.0, 1.0, 1.0]\n\n    def flux("
+    file = write("effect", ("def flux(", port))
+    with pytest.raises(tf.InputError, match=r"capacity_factor: must give a number, or \d+ numbers for") as caught:
+        study(USES["effect"]).run()
+    assert str(caught.value).startswith(f"{file}: class Lamp")
+
+
+STATES = {
+    "text": ("{'w': 'much'}", "{'w': 0.0}", "initial_states: 'w' must be finite, a number or an array"),
+    "nothing": ("None", "{'w': 0.0}", "initial_states: must return a mapping with w, not None"),
+    "shape": ("{'w': [0.0, 0.0]}", "{'w': 0.0}", r"state_rates: state 'w' has the shape \(2,\), its rate \(\)"),
+}
+
+
+@pytest.mark.parametrize("fault", STATES)
+def test_wrong_states_name_the_plugin(write: Write, fault: str) -> None:
+    """The first two were a traceback; the third named no file."""
+    begin, rates, words = STATES[fault]
+    states = (
+        "    states: ClassVar = {'w': EffectState('K', 'warmth')}\n\n"
+        f"    def initial_states(self, tyre):\n        return {begin}\n\n"
+        f"    def state_rates(self, tyre, t, state, temperatures):\n        return {rates}\n\n"
+    )
+    file = write("effect", ("import Effect,", "import Effect, EffectState,"), ("    # Unit,", f"{states}    # Unit,"))
+    with pytest.raises(tf.InputError, match=words) as caught:
+        study(USES["effect"]).run()
+    assert str(caught.value).startswith(f"{file}: class Lamp")

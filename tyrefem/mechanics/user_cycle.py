@@ -100,7 +100,8 @@ class UserCycle:
         """U, J/m3, at points (2, n) of a zone."""
         place = f"class {self.name}, energy_density"
         file = _file_of(self.cycle)
-        values = guarded(lambda: self.cycle.energy_density(zone, points), place, self.origin, file)()
+        energies = guarded(lambda *given: self.cycle.energy_density(*given), place, self.origin, file)
+        values = energies(zone, points)
         must = f"must give {points.shape[1]} numbers for {points.shape[1]} points, not "
         if values is None:  # a method without return, which numpy takes for nan
             raise plugin_error(self.origin, place, f"{must}None")

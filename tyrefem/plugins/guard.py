@@ -8,6 +8,8 @@ import traceback
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
+
 from tyrefem.errors import InputError
 from tyrefem.plugins.origin import Origin
 from tyrefem.plugins.signature import contract_methods
@@ -32,6 +34,8 @@ def guard(cls: type, origin: Origin) -> None:
 def guarded(function: Callable[..., Any], place: str, origin: Origin, file: str = "") -> Callable[..., Any]:
     """A function whose errors become an `InputError` with the plugin's file, the place, and the line.
 
+    Arrays that it is given are read-only: they belong to the solver, and other effects are given the same ones.
+
     ``file``: the Python file whose line is named; default: that of the function.
 
     >>> def film(speed): return 1 / speed
@@ -44,7 +48,7 @@ def guarded(function: Callable[..., Any], place: str, origin: Origin, file: str 
     @functools.wraps(function)
     def call(*args: Any, **named: Any) -> Any:
         try:
-            return function(*args, **named)
+            return function(*map(_read_only, args), **named)
         except (InputError, MemoryError):
             raise
         except (Exception, SystemExit) as error:
@@ -53,6 +57,14 @@ def guarded(function: Callable[..., Any], place: str, origin: Origin, file: str 
 
     setattr(call, _MARK, True)
     return call
+
+
+def _read_only(value: Any) -> Any:
+    """An array as a view that cannot be changed in place; everything else as it is."""
+    if isinstance(value, np.ndarray):
+        value = value.view()
+        value.flags.writeable = False
+    return value
 
 
 def failure_words(error: BaseException, file: str) -> str:
