@@ -354,3 +354,55 @@ def test_wrong_states_name_the_plugin(write: Write, fault: str) -> None:
     with pytest.raises(tf.InputError, match=words) as caught:
         study(USES["effect"]).run()
     assert str(caught.value).startswith(f"{file}: class Lamp")
+
+
+LATE = {
+    "film without return": ("boundary-law", "return self", "if not 8 < speed < 9.5: return self", "film: .* not None"),
+    "film nan": ("boundary-law", "return self", "return np.nan if 8 < speed < 9.5 else self", "film: .* not nan"),
+    "tan delta nan": (
+        "tan-delta-law", "return self", "return np.where(abs(temperature - 26.5) < 1.0, np.nan, 0.1) * self",
+        "tan_delta: must give finite numbers, not nan at 2[56]",
+    ),
+    "energy nan": (
+        "strain-law", "return (CROWN", "return np.nan if points.shape[1] > 20 else (CROWN",
+        "energy_density: must be finite, of at least 0 J/m3, not nan",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("fault", LATE)
+def test_a_value_that_no_trial_meets_names_the_plugin(write: Write, fault: str) -> None:
+    """A traceback, or an error of the solver for another boundary, without the file."""
+    kind, old, new, words = LATE[fault]
+    file = write(kind, (old, new), ("from typing", "import numpy as np\nfrom typing"))
+    with pytest.raises(tf.InputError, match=words) as caught:
+        study(USES[kind]).run()
+    assert str(caught.value).startswith(f"{file}: class ")
+
+
+SPECTRA = {
+    "error": ("1 / 0", r"spectrum: ZeroDivisionError: division by zero \(line \d+\)"),
+    "shape": ("np.ones(3)", r"spectrum: must give \d+ numbers for \d+ points for each of 1 to 35 orders, not \(3,\)"),
+    "too many": ("np.ones((36, points.shape[1]))", "for each of 1 to 35 orders, not .36, "),
+    "nothing": ("None", "for each of 1 to 35 orders, not None"),
+    "negative": ("-np.ones((2, points.shape[1]))", "spectrum: must be finite, of at least 0 J/m3, not -1"),
+}
+
+
+@pytest.mark.parametrize("fault", SPECTRA)
+def test_a_wrong_spectrum_names_the_plugin(write: Write, fault: str) -> None:
+    """A traceback in the run, or heat of further orders left out, or negative heat."""
+    given, words = SPECTRA[fault]
+    spectrum = f"def spectrum(self, zone, points):\n        return {given}\n\n    # J/m3 at points"
+    file = write("strain-law", ("# J/m3 at points", spectrum))
+    with pytest.raises(tf.InputError, match=words) as caught:
+        study(USES["strain-law"]).run()
+    assert str(caught.value).startswith(f"{file}: class CrownToBead")
+
+
+def test_a_wrong_solved_case_names_the_plugin(write: Write) -> None:
+    case = "@property\n    def solved_case(self):\n        return None\n\n    # J/m3 at points"
+    file = write("strain-law", ("# J/m3 at points", case))
+    with pytest.raises(tf.InputError, match=r"solved_case must be a .*LoadCase, not None") as caught:
+        study(USES["strain-law"]).run()
+    assert str(caught.value).startswith(f"{file}: class CrownToBead")
