@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 import tyrefem as tf
+from tyrefem.inputs.study_plugins import plugin_summary
 from tyrefem.plugins import registry, sent, use
 from tyrefem.variants.answer_store import effects_source, study_digest
 from tyrefem.variants.dask_cluster import Dask
@@ -280,3 +281,22 @@ def test_a_package_has_the_same_digest_whatever_is_loaded_of_it(
         digests.append(done.stdout)
     assert "hot_laws.air" in digests[0]
     assert digests[0] == digests[1]
+
+
+def test_an_edited_law_acts_in_the_next_sweep_of_this_process(write: Write, folder: Path) -> None:
+    """A sweep went on with materials and films of the former law, which the tyres of the last sweep had."""
+    write("tan-delta-law")
+    changes = {**COARSE, "materials.tread": {"base": "nasa-tread", "loss_tangent": LOSS}}
+    study, speeds = tf.study("nasa-22x5.5-8pr", changes), {"drive.speed": ["20 mph"]}
+    before = study.sweep(speeds, reduced="never", scheduler=Here()).table["hottest_degC"][0]
+    write("tan-delta-law", ("return self.value *", "return 2.0 * self.value *"))
+    use(folder)
+    changed = study.replace({"drive.speed": "20 mph"})
+    run = changed.run().peaks["tyre"].temperature
+    assert run > before + 1
+    for each in (study, changed):
+        swept = each.sweep(speeds, reduced="never", scheduler=Here()).table["hottest_degC"][0]
+        assert swept == pytest.approx(run, abs=1e-9)
+    (old,), (new,) = (plugin_summary(each)["plugins"] for each in (study, changed))
+    assert old["name"] == new["name"] == "arrhenius"
+    assert old["sha256"] != new["sha256"]
