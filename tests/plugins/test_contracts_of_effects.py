@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any, ClassVar, Literal
 
 import pytest
 
-from tyrefem.contracts.effect import _neutral, _tables, contracts
+from tyrefem.contracts.effect import _neutral, _tables, _units, _vectorised, contracts
+from tyrefem.contracts.law import _friction_alone
 from tyrefem.contracts.study import quick_study
 from tyrefem.contracts.template import template
 from tyrefem.effects import Effect, Prior
 from tyrefem.effects.description import example
 from tyrefem.errors import InputError
+from tyrefem.materials.road_friction import FrictionOnRoad
 from tyrefem.simulation.surroundings import Surroundings
 
 pytestmark = pytest.mark.fast
@@ -77,3 +79,51 @@ def test_a_study_without_sensors_does_not_fail_an_effect() -> None:
 def test_a_name_whose_class_is_a_word_of_python_is_refused(name: str) -> None:
     with pytest.raises(InputError, match=f"'{name}' is not allowed as a plugin's name"):
         template("effect", name)
+
+
+class OfTheHottest(Cooling):
+    """A factor from the hottest of the points that are evaluated together."""
+
+    name: ClassVar[str] = "made-up-hottest"
+
+    def conductivity_factor(self, tyre: Any, region: str, T: Any) -> tuple[Any, Any]:
+        return 1.0, 1.0 - self.into * T.max() * 1e-6
+
+
+def test_a_factor_of_all_temperatures_together_is_found() -> None:
+    tyre = Surroundings(quick_study())
+    fault = _vectorised(tyre, {"typical": OfTheHottest.check({"into": "-100 W/m**2"})})
+    assert str(fault).startswith("conductivity_factor gives 1.012 at a temperature among")
+    assert str(fault).endswith("1.002 at it alone")
+
+
+def test_a_number_without_a_unit_is_found() -> None:
+    class Plain(Cooling):
+        """A parameter as a plain float."""
+
+        name: ClassVar[str] = "made-up-plain"
+        gain: float = 1.0
+
+    assert _units(Cooling) is None
+    assert str(_units(Plain)).startswith("'gain' is a number without a unit")
+
+
+def test_a_friction_of_the_mean_pressure_is_found() -> None:
+    class OfTheMean(FrictionOnRoad):
+        """A coefficient from all points together."""
+
+        law: Literal["made-up-mean"]
+
+        def mu(self, speed: Any, pressure: Any, temperature: Any) -> Any:
+            return pressure.mean() / 1e6 + 0 * speed
+
+    law = OfTheMean.check({"law": "made-up-mean", "source": "estimate: made up"})
+    assert _friction_alone(law) == "at 0 m/s, 100 kPa, -20 degC it gives 0.38 among others, 0.1 alone"
+
+
+def test_a_name_whose_class_would_hide_what_the_template_imports_is_refused() -> None:
+    """`tyrefem new strain-law zone` wrote a file whose class Zone stood where the strain cycle needs another Zone."""
+    with pytest.raises(InputError, match=r"'zone' is not allowed as the name of this strain law: .* would hide Zone"):
+        template("strain-law", "zone")
+    assert 'name: ClassVar[str] = "n-a-m-e"' in template("effect", "n-a-m-e")
+    assert "class NAME(Effect):" in template("effect", "n-a-m-e")

@@ -143,6 +143,14 @@ def test_a_named_index_of_an_answer_becomes_a_column(write: Write) -> None:
     assert "in variant 2" in answer.words[0]
 
 
+def test_sentences_do_not_change_the_table_of_their_answer(write: Write) -> None:
+    """A table that was written before the sentences were made was another than after."""
+    write("sweep-answer", (SENTENCES, "rows['hottest_degC'] += 1e3; highest = rows.iloc[0]"))
+    answer = tf.study("nasa-22x5.5-8pr", COARSE).sweep({"drive.speed": ["10 mph"]}, reduced="never", highest={}).answers
+    assert "is 10" in answer["highest"].words[0]
+    assert answer["highest"].table["hottest_degC"].iloc[0] < 100
+
+
 def test_an_edited_answer_takes_up_the_finished_variants(write: Write, folder: Path, tmp_path: Path) -> None:
     """A sweep of days does not run again because its user's answer failed: no variant depends on it."""
     from tyrefem.plugins import use

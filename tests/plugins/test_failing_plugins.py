@@ -288,3 +288,121 @@ def test_a_folder_with_the_separator_of_paths_in_its_name_is_refused_in_words(fo
     for name in (use, use_effects):
         with pytest.raises(tf.InputError, match="which separates the folders in TYREFEM_PLUGINS"):
             name(place)
+
+
+IN_PLACE = {
+    "effect": ("return self.shine", "x += 0.0"),
+    "tan-delta-law": ("kelvin = np", "temperature += 0.0; kelvin = np"),
+    "friction-law": ("warm = np", "speed += 0.0; warm = np"),
+    "strain-law": ("return (CROWN", "points += 0.0; return (CROWN"),
+}
+
+
+@pytest.mark.parametrize("kind", IN_PLACE)
+def test_an_array_that_a_method_is_given_cannot_be_changed_in_place(write: Write, kind: str) -> None:
+    """The solver's temperatures were shifted for the effects that came after: 5 K too hot, by their order."""
+    file = write(kind, IN_PLACE[kind])
+    with pytest.raises(tf.InputError, match=r"read-only \(line \d+\)") as caught:
+        study(USES[kind]).run()
+    assert str(file) in str(caught.value)
+
+
+CLASSES = {
+    "surface": ('("outside_air",)', '("outside-air",)', "unknown surface 'outside-air'; did you mean 'outside_air'"),
+    "text": ('("outside_air",)', '("outside_air")', "'surfaces' must be a tuple of names"),
+    "jump": ("    # Unit,", "    jumps: ClassVar = 5.0\n    # Unit,", "'jumps' must be a tuple of times in seconds"),
+    "jumps": ("    # Unit,", "    jumps: ClassVar = [5.0]\n    # Unit,", "'jumps' must be a tuple of times in seconds"),
+    "no unit": ('"W/m**2"', '""', "parameter 'shine' needs a unit"),
+    "no such unit": ('"W/m**2"', '"W/mm**2/x"', "parameter 'shine': unknown unit 'W/mm"),
+}
+
+
+@pytest.mark.parametrize("fault", CLASSES)
+def test_a_class_that_would_do_nothing_is_left_out_in_words(write: Write, fault: str) -> None:
+    old, new, words = CLASSES[fault]
+    write("effect", (old, new))
+    with pytest.warns(PluginWarning, match=words):
+        assert registry().plugins == ()
+
+
+def test_a_factor_for_another_number_of_temperatures_names_the_plugin(write: Write) -> None:
+    """Three, as many as the trial has: a traceback of the solver."""
+    port = "def capacity_factor(self, tyre, region, T):\n        return [1.0, 1.0, 1.0]\n\n    def flux("
+    file = write("effect", ("def flux(", port))
+    with pytest.raises(tf.InputError, match=r"capacity_factor: must give a number, or \d+ numbers for") as caught:
+        study(USES["effect"]).run()
+    assert str(caught.value).startswith(f"{file}: class Lamp")
+
+
+STATES = {
+    "text": ("{'w': 'much'}", "{'w': 0.0}", "initial_states: 'w' must be finite, a number or an array"),
+    "nothing": ("None", "{'w': 0.0}", "initial_states: must return a mapping with w, not None"),
+    "shape": ("{'w': [0.0, 0.0]}", "{'w': 0.0}", r"state_rates: state 'w' has the shape \(2,\), its rate \(\)"),
+}
+
+
+@pytest.mark.parametrize("fault", STATES)
+def test_wrong_states_name_the_plugin(write: Write, fault: str) -> None:
+    """The first two were a traceback; the third named no file."""
+    begin, rates, words = STATES[fault]
+    states = (
+        "    states: ClassVar = {'w': EffectState('K', 'warmth')}\n\n"
+        f"    def initial_states(self, tyre):\n        return {begin}\n\n"
+        f"    def state_rates(self, tyre, t, state, temperatures):\n        return {rates}\n\n"
+    )
+    file = write("effect", ("import Effect,", "import Effect, EffectState,"), ("    # Unit,", f"{states}    # Unit,"))
+    with pytest.raises(tf.InputError, match=words) as caught:
+        study(USES["effect"]).run()
+    assert str(caught.value).startswith(f"{file}: class Lamp")
+
+
+LATE = {
+    "film without return": ("boundary-law", "return self", "if not 8 < speed < 9.5: return self", "film: .* not None"),
+    "film nan": ("boundary-law", "return self", "return np.nan if 8 < speed < 9.5 else self", "film: .* not nan"),
+    "tan delta nan": (
+        "tan-delta-law", "return self", "return np.where(abs(temperature - 26.5) < 1.0, np.nan, 0.1) * self",
+        "tan_delta: must give finite numbers, not nan at 2[56]",
+    ),
+    "energy nan": (
+        "strain-law", "return (CROWN", "return np.nan if points.shape[1] > 20 else (CROWN",
+        "energy_density: must be finite, of at least 0 J/m3, not nan",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("fault", LATE)
+def test_a_value_that_no_trial_meets_names_the_plugin(write: Write, fault: str) -> None:
+    """A traceback, or an error of the solver for another boundary, without the file."""
+    kind, old, new, words = LATE[fault]
+    file = write(kind, (old, new), ("from typing", "import numpy as np\nfrom typing"))
+    with pytest.raises(tf.InputError, match=words) as caught:
+        study(USES[kind]).run()
+    assert str(caught.value).startswith(f"{file}: class ")
+
+
+SPECTRA = {
+    "error": ("1 / 0", r"spectrum: ZeroDivisionError: division by zero \(line \d+\)"),
+    "shape": ("np.ones(3)", r"spectrum: must give \d+ numbers for \d+ points for each of 1 to 35 orders, not \(3,\)"),
+    "too many": ("np.ones((36, points.shape[1]))", "for each of 1 to 35 orders, not .36, "),
+    "nothing": ("None", "for each of 1 to 35 orders, not None"),
+    "negative": ("-np.ones((2, points.shape[1]))", "spectrum: must be finite, of at least 0 J/m3, not -1"),
+}
+
+
+@pytest.mark.parametrize("fault", SPECTRA)
+def test_a_wrong_spectrum_names_the_plugin(write: Write, fault: str) -> None:
+    """A traceback in the run, or heat of further orders left out, or negative heat."""
+    given, words = SPECTRA[fault]
+    spectrum = f"def spectrum(self, zone, points):\n        return {given}\n\n    # J/m3 at points"
+    file = write("strain-law", ("# J/m3 at points", spectrum))
+    with pytest.raises(tf.InputError, match=words) as caught:
+        study(USES["strain-law"]).run()
+    assert str(caught.value).startswith(f"{file}: class CrownToBead")
+
+
+def test_a_wrong_solved_case_names_the_plugin(write: Write) -> None:
+    case = "@property\n    def solved_case(self):\n        return None\n\n    # J/m3 at points"
+    file = write("strain-law", ("# J/m3 at points", case))
+    with pytest.raises(tf.InputError, match=r"solved_case must be a .*LoadCase, not None") as caught:
+        study(USES["strain-law"]).run()
+    assert str(caught.value).startswith(f"{file}: class CrownToBead")

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 import tyrefem as tf
+from tyrefem.inputs.study_plugins import plugin_summary
 from tyrefem.plugins import registry, sent, use
 from tyrefem.variants.answer_store import effects_source, study_digest
 from tyrefem.variants.dask_cluster import Dask
@@ -243,3 +244,59 @@ def test_a_loaded_run_names_the_plugin_that_is_missing(
         tf.load(tmp_path / "out")
     assert f"the result used the {kind.replace('-', ' ')} '" in str(caught.value)
     assert f"of {file}, which this process has not: set TYREFEM_PLUGINS={file.parent}, or" in str(caught.value)
+
+
+def test_a_class_of_a_package_stays_the_package_s_where_a_file_extends_it(
+    write: Write, folder: Path, tmp_path: Path
+) -> None:
+    """It counted as the file's: the package's class "has the name of" it, and no study could use it."""
+    packages = package(tmp_path / "site", write("effect").read_text(encoding="utf-8"))
+    (folder / "lamp.py").unlink()
+    (folder / "mine.py").write_text('import hot_laws\n\n\nLamp = hot_laws.Lamp\n\n\nclass Second(Lamp):\n    """."""\n'
+                                    '\n    name = "second"\n', encoding="utf-8")  # fmt: skip
+    done = listed(packages, "list", "plugins", TYREFEM_PLUGINS=str(folder))
+    assert done.stderr == ""
+    lamp, second = done.stdout.splitlines()
+    assert lamp.endswith("[package hot-laws 1.2 (hot_laws)]")
+    assert second.endswith(f"[{folder / 'mine.py'}]")
+
+
+def test_a_package_has_the_same_digest_whatever_is_loaded_of_it(
+    write: Write, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Workers that had loaded fewer of its modules refused the study, as from another package."""
+    text = write("boundary-law").read_text(encoding="utf-8")
+    packages = package(tmp_path / "site", "", entry="hot_laws.air")
+    (packages / "hot_laws.py").unlink()
+    (packages / "hot_laws").mkdir()
+    for name, content in (("__init__", ""), ("air", text), ("tools", "x = 1\n")):
+        (packages / "hot_laws" / f"{name}.py").write_text(content, encoding="utf-8")
+    monkeypatch.setenv("TYREFEM_PLUGINS", "")
+    code = "from tyrefem.plugins import sent; print(sent().packages)"
+    digests = []
+    for first in ("", "import hot_laws.tools; "):
+        environment = os.environ | {"PYTHONPATH": os.pathsep.join([str(packages), os.environ.get("PYTHONPATH", "")])}
+        command = [sys.executable, "-c", first + code]
+        done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=120, check=True)
+        digests.append(done.stdout)
+    assert "hot_laws.air" in digests[0]
+    assert digests[0] == digests[1]
+
+
+def test_an_edited_law_acts_in_the_next_sweep_of_this_process(write: Write, folder: Path) -> None:
+    """A sweep went on with materials and films of the former law, which the tyres of the last sweep had."""
+    write("tan-delta-law")
+    changes = {**COARSE, "materials.tread": {"base": "nasa-tread", "loss_tangent": LOSS}}
+    study, speeds = tf.study("nasa-22x5.5-8pr", changes), {"drive.speed": ["20 mph"]}
+    before = study.sweep(speeds, reduced="never", scheduler=Here()).table["hottest_degC"][0]
+    write("tan-delta-law", ("return self.value *", "return 2.0 * self.value *"))
+    use(folder)
+    changed = study.replace({"drive.speed": "20 mph"})
+    run = changed.run().peaks["tyre"].temperature
+    assert run > before + 1
+    for each in (study, changed):
+        swept = each.sweep(speeds, reduced="never", scheduler=Here()).table["hottest_degC"][0]
+        assert swept == pytest.approx(run, abs=1e-9)
+    (old,), (new,) = (plugin_summary(each)["plugins"] for each in (study, changed))
+    assert old["name"] == new["name"] == "arrhenius"
+    assert old["sha256"] != new["sha256"]

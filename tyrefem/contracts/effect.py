@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from tyrefem.contracts.contract import Contract, finite_run, kept, of_trials
 from tyrefem.contracts.study import quick_study
-from tyrefem.effects import Effect
+from tyrefem.effects import Effect, Prior
 from tyrefem.effects.effect import FILMS, SINKS
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
@@ -88,6 +88,9 @@ def _entry(effect: type[Effect], choice: dict[str, str]) -> dict[str, str]:
 
 
 def _units(effect: type[Effect]) -> str | None:
+    for name, field in effect.model_fields.items():
+        if field.annotation is float and not any(isinstance(item, Prior | Unit) for item in field.metadata):
+            return f"'{name}' is a number without a unit: write Annotated[float, Prior(...)]"
     for parameter in effect.parameters():
         prior = parameter.prior
         for unit in (prior.unit, prior.written or prior.unit):
@@ -140,6 +143,17 @@ def _vectorised(tyre: Surroundings, tried: dict[str, Effect]) -> str | None:
                 alone = np.broadcast_to(port(x[:, n : n + 1], t, T[n : n + 1]), (1,))[0]
                 if not np.isclose(together[n], alone, rtol=1e-9, atol=0):
                     return f"{method} gives {together[n]:.6g} at a point among {T.size}, {alone:.6g} at it alone"
+    for region in tyre.study.section.regions:
+        for method in ("conductivity_factor", "capacity_factor"):
+            if effect.overrides(method):
+                of_region = functools.partial(getattr(effect, method), tyre, region)
+                together = _factors(of_region(T), T.size)
+                alone = np.column_stack([_factors(of_region(T[n : n + 1]), 1) for n in range(T.size)])
+                wrong = np.argwhere(~np.isclose(together, alone, rtol=1e-9, atol=0))
+                if wrong.size:
+                    place = tuple(wrong[0])
+                    values = f"{together[place]:.6g} at a temperature among {T.size}, {alone[place]:.6g} at it alone"
+                    return f"{method} gives {values}"
     if effect.overrides("flux"):
         for surface in effect.surfaces:
             together = np.broadcast_to(effect.flux(tyre, surface, x, t), T.shape)
@@ -175,6 +189,12 @@ def _neutral(tyre: Surroundings, effect: Effect) -> str | None:
                     other = float(given[given != value][0])
                     return f"{method} gives {other!r} at null; it must give {value:g}"
     return None
+
+
+def _factors(given: Any, size: int) -> NDArray[np.float64]:
+    """(1, n) or (2, n) factors of a port at n temperatures: of a capacity, or along and across the plies."""
+    parts = given if isinstance(given, tuple) else (given,)
+    return np.array([np.broadcast_to(part, (size,)) for part in parts], dtype=float)
 
 
 def _numbers(given: Any) -> NDArray[np.float64]:

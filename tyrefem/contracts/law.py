@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import functools
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -119,15 +118,10 @@ def _law(cls: type[Any]) -> str:
 
 def _alone(law: TanDeltaLaw) -> str | None:
     many = np.array(TEMPERATURES, dtype=float)
-    return _same(lambda T: law(T), many, "degC")
-
-
-def _same(values: Callable[[Any], Any], points: Any, unit: str) -> str | None:
-    together = values(points)
-    for n, point in enumerate(points):
-        alone = float(values(float(point)))
-        if not np.isclose(together[n], alone, rtol=1e-9, atol=0):
-            return f"at {point:g} {unit} it gives {together[n]:.6g} among others, {alone:.6g} alone"
+    for together, point in zip(law(many), many, strict=True):
+        alone = float(law(float(point)))
+        if not np.isclose(together, alone, rtol=1e-9, atol=0):
+            return f"at {point:g} degC it gives {together:.6g} among others, {alone:.6g} alone"
     return None
 
 
@@ -140,9 +134,11 @@ def _frequency(law: TanDeltaLaw) -> str | None:
 
 
 def _friction_alone(law: FrictionOnRoad) -> str | None:
-    speeds = np.array([0.0, 1e-3, 0.1, 1.0, 10.0])
-    return _same(functools.partial(_at, law), speeds, "m/s")
-
-
-def _at(law: FrictionOnRoad, speed: Any) -> Any:
-    return law(speed, 3e5, 40.0)
+    points = np.array([(0.0, 1e5, -20.0), (1e-3, 3e5, 25.0), (0.1, 1e6, 60.0), (1.0, 2e5, 100.0), (10.0, 3e5, 40.0)])
+    together = law(*points.T)
+    for mu, point in zip(together, points, strict=True):
+        alone = float(law(*(float(value) for value in point)))
+        if not np.isclose(mu, alone, rtol=1e-9, atol=0):
+            at = f"{point[0]:g} m/s, {point[1] / 1e3:g} kPa, {point[2]:g} degC"
+            return f"at {at} it gives {mu:.6g} among others, {alone:.6g} alone"
+    return None

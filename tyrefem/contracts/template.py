@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import keyword
 import re
 import tempfile
@@ -29,7 +30,7 @@ def template(kind: str, name: str) -> str:
     Raises
     ------
     InputError : a name that is not of small letters, digits and single hyphens, or whose class would be a word of
-        Python, such as none.
+        Python, such as none, or a class that the template imports, such as zone.
 
     >>> "class HotWind(OutsideAirLaw):" in template("boundary-law", "hot-wind")
     True
@@ -37,7 +38,20 @@ def template(kind: str, name: str) -> str:
     if not _ALLOWED.fullmatch(name) or keyword.iskeyword(class_name(name)):
         raise InputError(f"'{name}' is not allowed as a plugin's name; allowed: small letters, digits, -, as hot-wind")
     text = (Path(__file__).parent / "templates" / f"{kind}.txt").read_text(encoding="utf-8")
-    return text.replace("CLASS", class_name(name)).replace("NAME", name)
+    if class_name(name) in _imported(text):
+        words = f"its class would hide {class_name(name)}, which the template imports: choose another name"
+        raise InputError(f"'{name}' is not allowed as the name of this {kind.replace('-', ' ')}: {words}")
+    return re.sub("CLASS|NAME", lambda place: {"CLASS": class_name(name), "NAME": name}[place[0]], text)
+
+
+def _imported(text: str) -> set[str]:
+    """The names that a Python file imports.
+
+    >>> _imported("from typing import Any") == {"Any"}
+    True
+    """
+    imports = [node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.Import | ast.ImportFrom)]
+    return {alias.asname or alias.name for node in imports for alias in node.names}
 
 
 def check_free(kind: str, name: str) -> None:

@@ -20,7 +20,7 @@ from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import CoreSchema, core_schema
 
 from tyrefem.cache import Cache
-from tyrefem.effects.effect import Effect, Parameter, Prior, complaint
+from tyrefem.effects.effect import Effect, Parameter, Prior, complaint, wrong_unit
 from tyrefem.effects.shapes import with_checked_shapes
 from tyrefem.effects.state import EffectState
 from tyrefem.errors import InputError, PluginWarning, nearest
@@ -59,7 +59,7 @@ KIND = Effect.plugin_kind = Kind(
     'name: ClassVar[str] = "..."',
     lambda cls: str(getattr(cls, "name", "")),
     shipped_effects,
-    lambda cls: complaint(cls),
+    lambda cls: complaint(cls) or wrong_unit(cls),
     with_checked_shapes,
 )
 

@@ -379,6 +379,9 @@ def complaint(cls: type[Effect]) -> str | None:
     for name, state in cls.states.items():
         if not state.scale > 0:
             return f"state '{name}' needs a positive scale"
+    wrong = _wrong_surfaces(cls.surfaces) or _wrong_jumps(cls.jumps)
+    if wrong:
+        return wrong
     if not cls.ports():
         return f"overrides no port; allowed: {', '.join(port.name for port in PORTS)}"
     for name, field in cls.model_fields.items():
@@ -396,4 +399,34 @@ def complaint(cls: type[Effect]) -> str | None:
             return f"parameter '{name}' needs a positive scale"
         if field.default != begin:
             return f"parameter '{name}' must have the default {begin:g}"
+    return None
+
+
+def _wrong_surfaces(surfaces: Any) -> str | None:
+    """What is wrong with a class's surfaces: at an unknown one an effect would do nothing."""
+    if isinstance(surfaces, property):  # of each study
+        return None
+    if not isinstance(surfaces, tuple | list):
+        return f"'surfaces' must be a tuple of names, such as ('road',), not {surfaces!r:.40}"
+    unknown = next((name for name in surfaces if name not in SURFACES), None)
+    return None if unknown is None else f"unknown surface {unknown!r:.40}{nearest(str(unknown), SURFACES)}"
+
+
+def _wrong_jumps(jumps: Any) -> str | None:
+    """What is wrong with a class's jumps: a diagnosis would leave out those of a list."""
+    if isinstance(jumps, property) or (isinstance(jumps, tuple) and all(isinstance(t, int | float) for t in jumps)):
+        return None
+    return f"'jumps' must be a tuple of times in seconds, such as (300.0,), not {jumps!r:.40}"
+
+
+def wrong_unit(cls: type[Effect]) -> str | None:
+    """The first parameter of an effect's class whose unit cannot be read, or None."""
+    for parameter in cls.parameters():
+        prior = parameter.prior
+        if not prior.unit:
+            return f"parameter '{parameter.name}' needs a unit: '1' for a pure number"
+        try:
+            Unit(prior.unit)(prior.text(prior.origin))
+        except InputError as error:
+            return f"parameter '{parameter.name}': {error.message}"
     return None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import math
 from collections.abc import Callable
 from typing import Any
 
@@ -11,31 +12,34 @@ import numpy as np
 from tyrefem.plugins import Origin
 from tyrefem.plugins.guard import plugin_error
 
-#: Ports of many places -> the number of the argument with the points (2, n), or with the temperatures (n,).
-PLACES = {"heat_factor": 2, "heat_addend": 2, "flux": 2}
+#: Ports of many points (2, n), and of many temperatures; both are their third argument after the object.
+OF_POINTS, OF_TEMPERATURES = ("heat_factor", "heat_addend", "flux"), ("capacity_factor", "conductivity_factor")
+_PLACES = 2
 _MARK = "checks_its_shape"
 
 
 def with_checked_shapes(cls: type[Any], origin: Origin) -> None:
     """Let the ports of a user's effect refuse values that do not fit the points."""
-    for name, place in PLACES.items():
+    for name in (*OF_POINTS, *OF_TEMPERATURES):
         for part in cls.__mro__:
             method = vars(part).get(name)
             if method is not None and hasattr(method, "_names_its_plugin") and not hasattr(method, _MARK):
-                setattr(part, name, _checked(method, place, f"class {part.__name__}, {name}", origin))
+                setattr(part, name, _checked(method, name, f"class {part.__name__}, {name}", origin))
 
 
-def _checked(method: Callable[..., Any], place: int, where: str, origin: Origin) -> Callable[..., Any]:
+def _checked(method: Callable[..., Any], name: str, where: str, origin: Origin) -> Callable[..., Any]:
     @functools.wraps(method)
     def checked(self: Any, *given: Any) -> Any:
         value = method(self, *given)
-        if isinstance(value, float | int):
-            return value
-        size = given[place].shape[1]
-        shape = np.shape(value)
-        if shape not in ((size,), (), (1,)) or np.asarray(value).dtype.kind not in "fiub":
-            must = f"must give a number, or {size} numbers for {size} points"
-            raise plugin_error(origin, where, f"{must}, not {_words(value)}")
+        # A pair: along and across the plies. What is no pair is refused by the trial of the port.
+        for each in value if name == "conductivity_factor" and isinstance(value, tuple) else (value,):
+            if isinstance(each, float | int):
+                continue
+            places = np.shape(given[_PLACES])[1:] if name in OF_POINTS else np.shape(given[_PLACES])
+            if np.shape(each) not in (places, (), (1,)) or np.asarray(each).dtype.kind not in "fiub":
+                many, what = math.prod(places), "points" if name in OF_POINTS else "temperatures"
+                must = f"must give a number, or {many} numbers for {many} {what}"
+                raise plugin_error(origin, where, f"{must}, not {_words(each)}")
         return value
 
     setattr(checked, _MARK, True)

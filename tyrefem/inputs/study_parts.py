@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,6 +15,7 @@ from tyrefem.inputs.sensor_places import sensor_places
 from tyrefem.inputs.study_card import StudyCard
 from tyrefem.inputs.study_materials import StudyMaterials
 from tyrefem.materials.card import MaterialCard
+from tyrefem.plugins import Registry, registry
 from tyrefem.sizes import completed_materials
 
 if TYPE_CHECKING:
@@ -33,7 +34,8 @@ class StudyParts(Brief):
     """A study's data with file and folder, and the parts read from them.
 
     ``new_section``: section before wear; ``section``: section worn by the study's effects. ``temperatures``: mean
-    temperatures of the regions for their moduli, degC; None: moduli as in the cards.
+    temperatures of the regions for their moduli, degC; None: moduli as in the cards. ``plugins``: the user's effects
+    and laws with which the parts were read.
     """
 
     data: Mapping[str, Any]
@@ -47,6 +49,7 @@ class StudyParts(Brief):
     #: The section's card as read.
     section_card: WrittenSection
     temperatures: Mapping[str, float] | None = None
+    plugins: Registry = field(default_factory=registry, repr=False)
 
     @classmethod
     def read(
@@ -58,6 +61,8 @@ class StudyParts(Brief):
         ------
         InputError : the study or a card that it names has an error: file, field, what is allowed.
         """
+        if like is not None and not registry().keeps(like.plugins):
+            like = None  # an effect or law was edited since
         try:
             card = StudyCard.check(data, file) if like is None else like.card.checked(like.data, data, file)
         except InputError as error:
@@ -121,7 +126,7 @@ class StudyParts(Brief):
         return replace(self, materials=self.materials.at_amplitudes(amplitudes))
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Pickle the data, not the card, because a user's effect is in no importable module."""
+        """Pickle the data, not the card: it is read again, with the user's effects of that process."""
         sections = (self.new_section, self.section)
         read = (self.materials, self.sensor_places, self.section_card, self.temperatures)
         return _opened, (self.data, self.file, self.folder, *sections, *read)

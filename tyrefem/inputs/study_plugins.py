@@ -15,12 +15,12 @@ if TYPE_CHECKING:
 
 def plugins_of(study: StudyData) -> tuple[Plugin, ...]:
     """The user's effects and laws that a study uses, each once, by kind and name."""
-    loaded = registry()
-    if not loaded.plugins:
-        return ()
-    used = [loaded.of_class(type(card)) for card in _cards((study.card, dict(study.materials)))]
+    loaded = study.parts.plugins
+    used = (
+        [loaded.of_class(type(card)) for card in _cards((study.card, dict(study.materials)))] if loaded.plugins else []
+    )
     strain = study.card.mechanics.strain
-    used += [plugin for plugin in loaded.plugins if plugin.kind.name == "strain law" and plugin.name == strain]
+    used += [plugin for plugin in registry().plugins if plugin.kind.name == "strain law" and plugin.name == strain]
     present = {plugin for plugin in used if plugin is not None}
     return tuple(sorted(present, key=lambda plugin: (plugin.kind.name, plugin.name)))
 

@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 from tyrefem.errors import InputError
 from tyrefem.materials.loss_tangent import Loss
 from tyrefem.materials.properties import Sourced
-from tyrefem.plugins import Kind, Range, Trial, trial
+from tyrefem.plugins import Kind, Range, Trial, registry, trial
+from tyrefem.plugins.guard import plugin_error
 
 Array = NDArray[np.float64]
 #: Temperatures at which laws are tried, degC, and frequencies, Hz.
@@ -83,9 +84,16 @@ class OfFrequencyAndTemperature:
     def __call__(self, frequency: float, temperature: Array) -> Array:
         temperature = np.asarray(temperature, dtype=float)
         values = np.asarray(self.law.tan_delta(temperature, frequency), dtype=float)
-        if values.shape == temperature.shape:
-            return values
         if values.shape == ():
-            return np.full_like(temperature, float(values))
-        message = f"class {type(self.law).__name__}, tan_delta: must give shape {temperature.shape}, not {values.shape}"
-        raise InputError(message)
+            values = np.full_like(temperature, float(values))
+        if values.shape != temperature.shape:
+            raise self._error(f"must give shape {temperature.shape}, not {values.shape}")
+        wrong = ~np.isfinite(values)
+        if wrong.any():
+            raise self._error(f"must give finite numbers, not {values[wrong][0]:g} at {temperature[wrong][0]:.6g} degC")
+        return values
+
+    def _error(self, words: str) -> InputError:
+        cls = type(self.law)
+        place, plugin = f"class {cls.__name__}, tan_delta", registry().of_class(cls)
+        return InputError(f"{place}: {words}") if plugin is None else plugin_error(plugin.origin, place, words)

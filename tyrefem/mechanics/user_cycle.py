@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.mechanics.strain_cycle import Zone
+from tyrefem.inputs.loading import LoadCase
+from tyrefem.mechanics.strain_cycle import ORDERS, Zone
 from tyrefem.plugins import Origin, Range, Trial, registry, trial
 from tyrefem.plugins.guard import guarded, plugin_error
 from tyrefem.plugins.kind import is_ours
 
 if TYPE_CHECKING:
     from tyrefem.geometry import Section
-    from tyrefem.inputs.loading import LoadCase
     from tyrefem.inputs.study import StudyData
 
 Array = NDArray[np.float64]
@@ -83,7 +83,8 @@ class UserCycle:
     def __getattr__(self, name: str) -> Any:
         if name.startswith("__") or name == "cycle":
             raise AttributeError(name)
-        return getattr(self.cycle, name)
+        value = getattr(self.cycle, name)
+        return functools.partial(self._energies, name) if name == "spectrum" else value
 
     @property
     def zones(self) -> tuple[Zone, ...]:
@@ -98,16 +99,31 @@ class UserCycle:
 
     def energy_density(self, zone: str, points: Array) -> Array:
         """U, J/m3, at points (2, n) of a zone."""
-        place = f"class {self.name}, energy_density"
+        return self._energies("energy_density", zone, points)
+
+    def _energies(self, method: str, zone: str, points: Array) -> Array:
+        """What a method of the cycle gives for the points: finite, of at least 0; (n,), a spectrum (orders, n)."""
+        place, count = f"class {self.name}, {method}", points.shape[1]
         file = _file_of(self.cycle)
-        values = guarded(lambda: self.cycle.energy_density(zone, points), place, self.origin, file)()
-        must = f"must give {points.shape[1]} numbers for {points.shape[1]} points, not "
+        values = guarded(lambda *given: getattr(self.cycle, method)(*given), place, self.origin, file)(zone, points)
+        by_order = method == "spectrum"
+        orders = f" for each of 1 to {len(ORDERS)} orders" if by_order else ""
+        must = f"must give {count} numbers for {count} points{orders}, not "
         if values is None:  # a method without return, which numpy takes for nan
             raise plugin_error(self.origin, place, f"{must}None")
         try:
-            return np.broadcast_to(np.asarray(values, dtype=float), points.shape[1:])
+            energies = np.asarray(values, dtype=float)
+            if not by_order:
+                energies = np.broadcast_to(energies, (count,))
+            elif energies.ndim != 2 or energies.shape[1] != count or not 0 < len(energies) <= len(ORDERS):
+                raise ValueError
         except (TypeError, ValueError):
             raise plugin_error(self.origin, place, f"{must}{np.shape(values)}") from None
+        wrong = ~np.isfinite(energies) | (energies < 0)
+        if wrong.any():
+            words = f"must be finite, of at least 0 J/m3, not {energies[wrong].flat[0]:g}"
+            raise plugin_error(self.origin, place, words)
+        return energies
 
     def trials(self, section: Section) -> Iterator[Trial]:
         """Zones of the section's regions, and energies at points of each."""
@@ -121,6 +137,12 @@ class UserCycle:
                 words = f"energy_density('{zone.name}', {points.shape[1]} points)"
                 energies = functools.partial(self.energy_density, zone.name, points)
                 yield trial(words, energies, ENERGIES, points.shape[1:])
+                if hasattr(self, "spectrum"):
+                    self._energies("spectrum", zone.name, points)
+                    yield Trial("spectrum gives energies of at least 0 J/m3 by order, one per place")
+        if hasattr(self, "solved_case"):
+            fits, must = isinstance(self.solved_case, LoadCase), "solved_case must be a tyrefem.inputs.loading.LoadCase"
+            yield Trial("solved_case is a load case", None if fits else f"{must}, not {self.solved_case!r:.60}")
 
 
 def of_present_law(cycle: Any, law: type[Any]) -> bool:

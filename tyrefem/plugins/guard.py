@@ -8,29 +8,43 @@ import traceback
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
+
 from tyrefem.errors import InputError
 from tyrefem.plugins.origin import Origin
 from tyrefem.plugins.signature import contract_methods
 
 _MARK = "_names_its_plugin"
+#: Return annotations of this package's methods that give a number; with True None is allowed too.
+_NUMBERS = {"float": False, "float | None": True}
+
+
+class WrongValueError(InputError):
+    """A method gives no finite number where this package's gives one. ``value``: what it gives."""
+
+    value: Any = None
 
 
 def guard(cls: type, origin: Origin) -> None:
     """Let the methods of a user's class that this package calls name themselves where they fail."""
-    for part, name, attribute, _ in list(contract_methods(cls)):
+    for part, name, attribute, base in list(contract_methods(cls)):
         place = f"class {part.__name__}, {name}"
+        numbers = getattr(base.fget if isinstance(base, property) else base, "__annotations__", {}).get("return")
         if isinstance(attribute, classmethod) and not hasattr(attribute.__func__, _MARK):
             setattr(part, name, classmethod(guarded(attribute.__func__, place, origin)))
         elif isinstance(attribute, staticmethod) and not hasattr(attribute.__func__, _MARK):
             setattr(part, name, staticmethod(guarded(attribute.__func__, place, origin)))
         elif isinstance(attribute, property) and attribute.fget and not hasattr(attribute.fget, _MARK):
-            setattr(part, name, property(guarded(attribute.fget, place, origin), doc=attribute.__doc__))
+            checked = _with_number(attribute.fget, numbers, place, origin)
+            setattr(part, name, property(guarded(checked, place, origin), doc=attribute.__doc__))
         elif inspect.isfunction(attribute) and not hasattr(attribute, _MARK):
-            setattr(part, name, guarded(attribute, place, origin))
+            setattr(part, name, guarded(_with_number(attribute, numbers, place, origin), place, origin))
 
 
 def guarded(function: Callable[..., Any], place: str, origin: Origin, file: str = "") -> Callable[..., Any]:
     """A function whose errors become an `InputError` with the plugin's file, the place, and the line.
+
+    Arrays that it is given are read-only: they belong to the solver, and other effects are given the same ones.
 
     ``file``: the Python file whose line is named; default: that of the function.
 
@@ -44,7 +58,7 @@ def guarded(function: Callable[..., Any], place: str, origin: Origin, file: str 
     @functools.wraps(function)
     def call(*args: Any, **named: Any) -> Any:
         try:
-            return function(*args, **named)
+            return function(*map(_read_only, args), **named)
         except (InputError, MemoryError):
             raise
         except (Exception, SystemExit) as error:
@@ -53,6 +67,35 @@ def guarded(function: Callable[..., Any], place: str, origin: Origin, file: str 
 
     setattr(call, _MARK, True)
     return call
+
+
+def _with_number(function: Callable[..., Any], numbers: str | None, place: str, origin: Origin) -> Callable[..., Any]:
+    """A function that must give a finite number, where ``numbers``, an annotation, says so; else as it is."""
+    if numbers not in _NUMBERS:
+        return function
+    allows_none = _NUMBERS[numbers]
+
+    @functools.wraps(function)
+    def checked(*args: Any, **named: Any) -> Any:
+        value = function(*args, **named)
+        if value is None and allows_none:
+            return value
+        if np.ndim(value) == 0 and np.asarray(value).dtype.kind in "fiub" and np.isfinite(value):
+            return value
+        error = plugin_error(origin, place, f"must give a finite number, not {value!r:.60}")
+        wrong = WrongValueError(error.message, file=error.file)
+        wrong.value = value
+        raise wrong
+
+    return checked
+
+
+def _read_only(value: Any) -> Any:
+    """An array as a view that cannot be changed in place; everything else as it is."""
+    if isinstance(value, np.ndarray):
+        value = value.view()
+        value.flags.writeable = False
+    return value
 
 
 def failure_words(error: BaseException, file: str) -> str:

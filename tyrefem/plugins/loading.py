@@ -136,17 +136,20 @@ def load_entry_point(entry: importlib.metadata.EntryPoint) -> LoadedModule:
 
 
 def _digest(module: str) -> str:
-    """Digest of the loaded Python files of a module's package."""
-    top = module.split(".")[0]
-    loaded = {
-        str(part.__file__)
-        for name, part in list(sys.modules.items())
-        if (name == top or name.startswith(f"{top}.")) and getattr(part, "__file__", None)
-    }
+    """Digest of the Python files of a module's package, loaded or not: another process may have loaded others."""
+    names = module.split(".")
+    prefixes = [sys.modules.get(".".join(names[: end + 1])) for end in range(len(names))]
+    # A namespace, which several packages share, has no file.
+    top = next((part for part in prefixes if getattr(part, "__file__", None)), None)
+    if top is None:
+        return ""
+    files = {Path(str(top.__file__)).name: Path(str(top.__file__))}
+    for folder in getattr(top, "__path__", ()):
+        files.update({file.relative_to(folder).as_posix(): file for file in Path(folder).rglob("*.py")})
     digest = hashlib.sha256()
-    for file in sorted(loaded):
+    for _, file in sorted(files.items()):
         try:
-            digest.update(Path(file).read_bytes())
+            digest.update(file.read_bytes())
         except OSError:
             return ""
     return digest.hexdigest()

@@ -15,7 +15,7 @@ class Origin:
     ----------
     file : the user's file; None for a package. package : name of the installed package; empty for a file.
     version : of the package, or ``__version__`` of the file; may be empty.
-    sha256 : of the file, or of the package's loaded files; empty if it could not be read.
+    sha256 : of the file, or of the package's Python files; empty if it could not be read.
     entry : the entry point as written, ``my_package.laws``.
     """
 

@@ -87,6 +87,10 @@ class Registry:
         """The plugin of a class; None for a class of this package."""
         return self._by_class.get(cls)
 
+    def keeps(self, other: Registry) -> bool:
+        """True if it has every class of another one: none has been edited or left out since."""
+        return other is self or other._by_class.keys() <= self._by_class.keys()
+
     def named(self, kind: Kind, name: str) -> Plugin | None:
         """The plugin of a kind and name, or None."""
         return next((plugin for plugin in self.plugins if plugin.kind is kind and plugin.name == name), None)
@@ -131,8 +135,13 @@ def _registry(values: tuple[str, str, str], received: tuple[str, ...] | None) ->
     finally:
         _loading = False
     plugins: list[Plugin] = []
-    for module in modules:
+    known: set[type] = set()
+    # Packages before files: a class of a package that a file imports, to extend it, stays the package's.
+    for module in sorted(modules, key=lambda module: module.origin.file is not None):
         for cls in module.classes:
+            if cls in known:
+                continue
+            known.add(cls)
             judged = _judged(cls, module.origin, plugins)
             if isinstance(judged, Plugin):
                 plugins.append(judged)

@@ -9,7 +9,7 @@ from typing import Any, Protocol, TypeVar
 import numpy as np
 
 from tyrefem.errors import InputError
-from tyrefem.plugins.guard import failure_words, plugin_error
+from tyrefem.plugins.guard import WrongValueError, failure_words, plugin_error
 from tyrefem.plugins.registry import registry
 
 
@@ -59,6 +59,8 @@ def trial(words: str, compute: Callable[[], Any], allowed: Range, shape: tuple[i
     claim = f"{words.split('(')[0].strip()} gives {given}".replace(" ,", ",").rstrip()
     try:
         value = compute()
+    except WrongValueError as error:
+        value = error.value
     except InputError as error:
         return Trial(claim, f"{must}, but fails: {error.message}")
     except Exception as error:

@@ -12,6 +12,8 @@ from tyrefem.effects import Effect
 from tyrefem.effects.state import EffectState, TemperaturesOfTyre, Value
 from tyrefem.effects.tyre import Tyre
 from tyrefem.errors import InputError
+from tyrefem.plugins import registry
+from tyrefem.plugins.guard import plugin_error
 
 Array = NDArray[np.float64]
 Key = tuple[str, ...]
@@ -84,7 +86,7 @@ class EffectStates:
             for place in mine:
                 if given[place.name].shape != place.shape:
                     words = f"state '{place.name}' has the shape {place.shape}, its rate {given[place.name].shape}"
-                    raise InputError(f"{words}", field=f"effects.{effect.name}.state_rates")
+                    raise _error(effect, "state_rates", words)
                 rates[place.part] = given[place.name].reshape(-1)
         return rates
 
@@ -118,6 +120,7 @@ class EffectStates:
     @staticmethod
     def _value(place: _Place, z: Array) -> Value:
         part = z[place.part].reshape(place.shape)
+        part.flags.writeable = False  # of the solver: a rate that is computed in place would change it
         return part if part.ndim else float(part)
 
     def named(self, values: Array) -> dict[str, StateHistory]:
@@ -132,12 +135,24 @@ class EffectStates:
 
 def checked_states(effect: Effect, given: Mapping[str, Value], method: str) -> dict[str, Array]:
     """Check the return value of an effect's method: state -> array () or (n,)."""
-    field = f"effects.{effect.name}.{method}"
     if not isinstance(given, Mapping) or set(given) != set(effect.states):
         names = ", ".join(effect.states)
-        raise InputError(f"must return a mapping with {names}, not {given!r:.60}", field=field)
-    values = {name: np.asarray(value, dtype=float) for name, value in given.items()}
-    for name, value in values.items():
-        if value.ndim > 1 or not np.isfinite(value).all():
-            raise InputError(f"'{name}' must be finite, a number or an array (n,), not {value!r:.60}", field=field)
+        raise _error(effect, method, f"must return a mapping with {names}, not {given!r:.60}")
+    values = {}
+    for name, value in given.items():
+        must = f"'{name}' must be finite, a number or an array (n,), not {value!r:.60}"
+        try:
+            values[name] = np.asarray(value, dtype=float)
+        except (TypeError, ValueError):
+            raise _error(effect, method, must) from None
+        if values[name].ndim > 1 or not np.isfinite(values[name]).all():
+            raise _error(effect, method, must)
     return values
+
+
+def _error(effect: Effect, method: str, words: str) -> InputError:
+    """An error of an effect's method; of a user's effect with its file."""
+    plugin = registry().of_class(type(effect))
+    if plugin is None:
+        return InputError(words, field=f"effects.{effect.name}.{method}")
+    return plugin_error(plugin.origin, f"class {type(effect).__name__}, {method}", words)

@@ -197,7 +197,8 @@ class EvenTemperatures:
 
 
 def _rates(tyre: Surroundings, effect: Effect) -> Iterator[Trial]:
-    initial = effect.initial_states(tyre)
+    given = checked_states(effect, effect.initial_states(tyre), "initial_states")
+    initial = {name: value if value.ndim else float(value) for name, value in given.items()}
     for t in times(tyre):
         for temperature in TEMPERATURES:
             rates = functools.partial(effect.state_rates, tyre, t, initial, EvenTemperatures(temperature))

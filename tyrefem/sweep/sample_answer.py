@@ -101,7 +101,7 @@ class SampleRows:
         ------
         InputError : they are no list of texts; names file and class.
         """
-        lines = self.question.sentences(self.rows)
+        lines = self.question.sentences(self.rows.copy())
         if not isinstance(lines, list | tuple) or not all(isinstance(line, str) for line in lines):
             raise self._error("sentences", f"must give a list of texts, not {lines!r:.60}")
         return list(lines)

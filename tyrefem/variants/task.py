@@ -19,7 +19,7 @@ from tyrefem import library
 from tyrefem.cache import Cache
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
-from tyrefem.plugins import Sent, receive, sent
+from tyrefem.plugins import Sent, receive, registry, sent
 from tyrefem.sizes import completed_materials
 from tyrefem.variants.outcomes import Answered, Failed, Outcome
 
@@ -218,7 +218,10 @@ class RecentTyres(threading.local):
 
     def most_similar(self, study: StudyData) -> RollingTyre | None:
         """The tyre of which a study can reuse most."""
-        return max(self.tyres, key=lambda tyre: _similarity(study, tyre.study), default=None)
+        # Tyres with a law that was edited since stay out: their materials and films are of the former law.
+        present = registry()
+        tyres = [tyre for tyre in self.tyres if present.keeps(tyre.study.parts.plugins)]
+        return max(tyres, key=lambda tyre: _similarity(study, tyre.study), default=None)
 
     def remember(self, tyre: RollingTyre) -> None:
         """Keep a tyre; one that has become too old is forgotten."""
