@@ -286,3 +286,36 @@ def test_ctrl_c_between_the_parts_of_one_time_leaves_the_whole_times(monkeypatch
     history = problem.transient(np.linspace(0.0, 100.0, 11), 50.0, partial=True)
     assert history.interrupted
     assert len(history.times) == len(history.values) == len(history.budget.residual) == 2
+
+
+def test_a_function_cannot_move_the_points_that_it_is_given() -> None:
+    """Problems on an equal mesh share them: ``x -= ...`` in a film would have moved those of the next problem."""
+
+    def film(x: np.ndarray, t: float) -> np.ndarray:
+        x -= 0.1
+        return 20.0 + 0.0 * x[0]
+
+    def source(x: np.ndarray, t: float, T: np.ndarray) -> np.ndarray:
+        x *= 2.0
+        return x[0]
+
+    for conditions, sources in (({"outside": Film(film, 25.0)}, {}), ({"outside": Fixed(25.0)}, {"tread": source})):
+        with pytest.raises(ValueError, match="read-only"):
+            Conduction(MESH, REGIONS, conditions, sources).steady()
+    with pytest.raises(ValueError, match="read-only"):
+        Conduction(MESH, REGIONS, {"outside": Fixed(lambda x, t: film(x, t))}).steady()
+
+
+def test_fields_and_histories_can_be_compared_and_counted() -> None:
+    """An equality of arrays has no truth value: ``field in fields`` ended with a ValueError of numpy."""
+    problem = Conduction(MESH, REGIONS, {"outside": Film(20.0, 25.0)})
+    fields = [problem.steady(), problem.steady()]
+    histories = [problem.transient([0.0, 1.0]), problem.transient([0.0, 1.0])]
+    for first, second in (fields, histories):
+        assert first == first
+        assert first != second
+        assert second in [first, second]
+        assert len({first, second}) == 2
+    for values in (fields[0].values, histories[0].values, histories[0].times, histories[0].points):
+        with pytest.raises(ValueError, match="read-only"):
+            values += 1.0

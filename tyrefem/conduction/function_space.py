@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_matrix
 from skfem.assembly.form.form import FormExtraParams
 
+from tyrefem.cache import read_only
 from tyrefem.errors import InputError, nearest
 
 Array = NDArray[Any]
@@ -70,7 +71,8 @@ class FunctionSpace:
         self.intorder = 3 if element == "P1" else 5
         self.basis = skfem.Basis(mesh, self.skfem_element, intorder=self.intorder)
         self.size = int(self.basis.N)
-        self.points: Array = self.basis.doflocs
+        #: Read-only: problems on an equal mesh share the space.
+        self.points: Array = read_only(self.basis.doflocs)
         self.element_dofs: Array = self.basis.element_dofs
         shape = self.basis.dx.shape
         self.phi = np.broadcast_to(

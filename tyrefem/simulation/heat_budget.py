@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
+from tyrefem.cache import read_only
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -32,6 +33,8 @@ class HeatBudget(Brief):
         slip), ``stored`` (by region), ``lost`` (by boundary), ``lumped`` (gas, rim; J only).
     residual : (n,) J, generated + sliding - stored - lost. ``imbalance`` : largest residual over the largest
         throughput. ``floor`` : J, less is rounding (`tyrefem.conduction.budget.Budget`).
+
+    All arrays are read-only.
     """
 
     times: Array
@@ -40,6 +43,12 @@ class HeatBudget(Brief):
     residual: Array
     imbalance: float
     floor: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name in ("energies", "powers"):
+            object.__setattr__(self, name, {key: read_only(each) for key, each in getattr(self, name).items()})
+        for name in ("times", "residual"):
+            object.__setattr__(self, name, read_only(getattr(self, name)))
 
     def _facts(self) -> Mapping[str, Any]:
         kinds = dict.fromkeys(kind for kind, _ in self.energies if kind != "lumped")
