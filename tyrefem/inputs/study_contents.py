@@ -84,6 +84,13 @@ class StudyContents(Brief):
         }
 
     @property
+    def file_read(self) -> Path | None:
+        """``file`` as an absolute path, also after a change of the working directory."""
+        if self.file is None or self.folder is None or self.file.is_absolute():
+            return self.file
+        return self.folder / self.file.name
+
+    @property
     def is_campaign(self) -> bool:
         """True if the study names a table of cases."""
         return self.card.cases is not None
