@@ -29,7 +29,7 @@ class StudyData(StudyContents):
     Parameters
     ----------
     name : name of the study.
-    data : the file as written (units in the text).
+    data : the file as written (units in the text); it cannot be changed.
     file : file of the study; None: the study was not read from a file.
     folder : folder of relative references (cards, tables).
     like : another study of the same cards, whose parts are reused where the two do not differ.
