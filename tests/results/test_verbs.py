@@ -16,6 +16,7 @@ from tyrefem.api import Comparison, Diagnosis, with_verbs
 from tyrefem.brief import Brief
 from tyrefem.compare import compare
 from tyrefem.diagnose import diagnosis as diagnosis_data
+from tyrefem.errors import InputError
 from tyrefem.mechanics.footprint.press import press
 
 
@@ -82,3 +83,15 @@ def test_a_comparison_has_verbs_and_its_data_have_none(tmp_path: Path) -> None:
     data = compare(study, inputs=False)
     assert not hasattr(data, "save")
     assert data.to_dict() == comparison.to_dict()
+
+
+def test_a_curve_names_its_peak_and_a_rolling_tyre_takes_one_temperature(tmp_path: Path) -> None:
+    coarse = tf.study("nasa-22x5.5-8pr", {"mesh.size": "16 mm", "mechanics.motion": "linear"})
+    for options, where in (({"slip_angle": [0.0, 0.05]}, "0.05 rad"), ({"slip": [0.01, 0.05]}, "slip 0.05")):
+        curve = coarse.slip_curve(**options, tolerance=0.5)
+        assert f"peak                 {curve.peak['force_N']:.5g} N at {where}" in repr(curve)
+    rolled = coarse.roll(slip=0.01, tolerance=0.5)
+    for temperature, message in (("80 degC", "did you mean 80"), (float("nan"), "must be finite")):
+        with pytest.raises(InputError, match=f"temperature: .*{message}"):
+            rolled.to_vtk(tmp_path, temperature)  # type: ignore[arg-type]
+    assert list(tmp_path.iterdir()) == []

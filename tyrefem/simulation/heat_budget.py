@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
 from tyrefem.cache import read_only
+from tyrefem.errors import InputError, nearest
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -18,6 +19,9 @@ if TYPE_CHECKING:
     from tyrefem.conduction.budget import Budget
 
 Array = NDArray[np.float64]
+
+#: What a budget counts; heat of friction only with slip, lumped bodies only where there are some.
+KINDS = ("generated", "sliding", "stored", "lost", "lumped")
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +65,13 @@ class HeatBudget(Brief):
         }
 
     def total(self, kind: str) -> float:
-        """Energy of a kind at the end, J."""
+        """Energy of a kind at the end, J; 0 of a kind that the run has not.
+
+        Raises
+        ------
+        InputError : no such kind.
+        """
+        _check_kind(kind)
         return float(sum(series[-1] for (k, _), series in self.energies.items() if k == kind))
 
     @property
@@ -84,7 +94,8 @@ class HeatBudget(Brief):
         return self.total("generated") + self.total("sliding")
 
     def power(self, kind: str) -> Array:
-        """Power of a kind over time, (n,) W."""
+        """Power of a kind over time, (n,) W; errors as `total`."""
+        _check_kind(kind)
         return np.asarray(
             sum((series for (k, _), series in self.powers.items() if k == kind), np.zeros(len(self.times)))
         )
@@ -136,6 +147,11 @@ class HeatBudget(Brief):
                 entry["power_W"] = row["power_W"]
             shares.setdefault(row["kind"], {})[row["name"]] = entry
         return shares
+
+
+def _check_kind(kind: str) -> None:
+    if kind not in KINDS:
+        raise InputError(f"no heat of the kind '{kind}'{nearest(str(kind), KINDS)}", field="kind")
 
 
 #: (boundary, number of the condition) -> name in the budget.
