@@ -62,6 +62,9 @@ def test_a_tyre_is_pressed_and_its_frequencies_are_found_by_verbs(tmp_path: Path
     loaded = coarse.press(deflection=0.015)
     assert loaded.footprint.load == pytest.approx(press(coarse, deflection=0.015).footprint.load, rel=1e-12)
     assert loaded.footprint.motion == "linear"
+    pressure = loaded.footprint.pressure
+    with pytest.raises(ValueError, match="read-only"):
+        pressure /= 1e3
     assert loaded.save(tmp_path / "pressed", ["tread"], pictures=False, vtk=False) == tmp_path / "pressed"
     assert json.loads((tmp_path / "pressed/press.json").read_text(encoding="utf-8"))["motion"] == "linear"
     assert "tread" in (tmp_path / "pressed/strain-cycle.csv").read_text(encoding="utf-8").splitlines()[1]
@@ -91,6 +94,9 @@ def test_a_curve_names_its_peak_and_a_rolling_tyre_takes_one_temperature(tmp_pat
         curve = coarse.slip_curve(**options, tolerance=0.5)
         assert f"peak                 {curve.peak['force_N']:.5g} N at {where}" in repr(curve)
     rolled = coarse.roll(slip=0.01, tolerance=0.5)
+    for values in (rolled.state.force, rolled.state.moment, rolled.state.power_map):
+        with pytest.raises(ValueError, match="read-only"):
+            values /= 1e3
     for temperature, message in (("80 degC", "did you mean 80"), (float("nan"), "must be finite")):
         with pytest.raises(InputError, match=f"temperature: .*{message}"):
             rolled.to_vtk(tmp_path, temperature)  # type: ignore[arg-type]
