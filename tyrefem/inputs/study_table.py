@@ -23,7 +23,7 @@ class StudyTable(dict[str, Any]):
     tyrefem.errors.InputError: a study does not change; study.replace({'drive.speed': '25 mph'}) gives a changed one
     """
 
-    __setitem__ = __delitem__ = __ior__ = update = setdefault = pop = popitem = clear = _refused  # type: ignore[assignment]
+    __setitem__ = __delitem__ = __ior__ = update = setdefault = pop = popitem = clear = _refused
 
     def __reduce__(self) -> tuple[Any, ...]:
         return StudyTable, (dict(self),)
@@ -35,8 +35,8 @@ class StudyTable(dict[str, Any]):
 class StudyList(list[Any]):
     """A list that cannot be changed; ``list(entries)`` and ``copy.deepcopy(entries)`` are lists that can."""
 
-    __setitem__ = __delitem__ = __iadd__ = __imul__ = _refused  # type: ignore[assignment]
-    append = extend = insert = pop = remove = clear = sort = reverse = _refused  # type: ignore[assignment]
+    __setitem__ = __delitem__ = __iadd__ = __imul__ = _refused
+    append = extend = insert = pop = remove = clear = sort = reverse = _refused
 
     def __reduce__(self) -> tuple[Any, ...]:
         return StudyList, (list(self),)

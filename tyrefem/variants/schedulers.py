@@ -65,7 +65,7 @@ class Local:
     def __init__(self, workers: int) -> None:
         if isinstance(workers, bool) or not isinstance(workers, Integral) or workers < 1:
             raise InputError(f"must be a whole number of at least 1, not {workers!r:.60}", field="workers")
-        self.workers = int(workers)
+        self.workers: int = int(workers)
         self._kept: ExitStack | None = None
         self._pool: Executor | None = None
 
