@@ -15,6 +15,7 @@ import pytest
 import tyrefem as tf
 from tyrefem.api import Study
 from tyrefem.cli import main
+from tyrefem.errors import InputError
 from tyrefem.reports.campaign import bars, run_campaign, write_campaign_report
 from tyrefem.sweep import campaign as campaigns
 from tyrefem.sweep.campaign import CampaignData
@@ -74,6 +75,15 @@ def test_a_defect_in_one_case_is_called_that(
     table = run_campaign(campaign, folder / "out")
     assert table["failure"][0] == "defect, please report: ZeroDivisionError: float division by zero"
     assert table["failure"][1] == ""
+
+
+def test_the_name_of_a_case_is_no_case(campaign: CampaignData) -> None:
+    """It had been taken for a failed run: "defect, please report: AttributeError"."""
+    name: Any = campaign.cases[0].name
+    for method in (campaign.outcome, campaign.case_study):
+        with pytest.raises(InputError, match=r"case: must be one of the campaign's cases, not '.*'; study\.case\(NAME"):
+            method(name)
+    assert campaign.study.case(name).name == name
 
 
 def test_an_interrupted_campaign_keeps_what_is_finished(

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import skfem
 
-from tyrefem.conduction import Conduction, Film, Fixed, Flux, Material, Radiation, Reservoir, SolverError
+from tyrefem.conduction import Conduction, Convection, Film, Fixed, Flux, Material, Radiation, Reservoir, SolverError
 from tyrefem.conduction.datum import checked
 from tyrefem.conduction.linear_solver import Ordering
 from tyrefem.conduction.transient import Integration
@@ -319,3 +319,93 @@ def test_far_too_much_heat_ends_a_run() -> None:
     problem = Conduction(square(1), REGIONS, {}, {"all": 1e12})
     with pytest.raises(SolverError, match="far too much heat"):
         problem.transient([0.0, 600.0], 25.0)
+
+
+def test_a_function_cannot_move_the_points_that_it_is_given() -> None:
+    """Problems on an equal mesh share them: ``x -= ...`` in a film would have moved those of the next problem."""
+
+    def film(x: np.ndarray, t: float) -> np.ndarray:
+        x -= 0.1
+        return 20.0 + 0.0 * x[0]
+
+    def source(x: np.ndarray, t: float, T: np.ndarray) -> np.ndarray:
+        x *= 2.0
+        return x[0]
+
+    for conditions, sources in (({"outside": Film(film, 25.0)}, {}), ({"outside": Fixed(25.0)}, {"tread": source})):
+        with pytest.raises(ValueError, match="read-only"):
+            Conduction(MESH, REGIONS, conditions, sources).steady()
+    with pytest.raises(ValueError, match="read-only"):
+        Conduction(MESH, REGIONS, {"outside": Fixed(lambda x, t: film(x, t))}).steady()
+
+
+def test_fields_and_histories_can_be_compared_and_counted() -> None:
+    """An equality of arrays has no truth value: ``field in fields`` ended with a ValueError of numpy."""
+    problem = Conduction(MESH, REGIONS, {"outside": Film(20.0, 25.0)})
+    fields = [problem.steady(), problem.steady()]
+    histories = [problem.transient([0.0, 1.0]), problem.transient([0.0, 1.0])]
+    for first, second in (fields, histories):
+        assert first == first
+        assert first != second
+        assert second in [first, second]
+        assert len({first, second}) == 2
+    for values in (fields[0].values, histories[0].values, histories[0].times, histories[0].points):
+        with pytest.raises(ValueError, match="read-only"):
+            values += 1.0
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"mesh": None}, "mesh: a NoneType is not supported; use MeshTri or MeshQuad"),
+        ({"mesh": "tyre.msh"}, "mesh: a str is not supported"),
+        ({"regions": [RUBBER]}, r"regions: must be a mapping of names, not \[Material"),
+        ({"regions": None}, "regions: must be a mapping of names, not None"),
+        ({"boundaries": ["inside"]}, r"boundaries: must be a mapping of names, not \['inside'\]"),
+        ({"sources": 1e5}, r"sources: must be a mapping of names, not 100000\.0"),
+        ({"sources": {"tread": np.nan}}, r"sources\.tread: must be finite, not nan"),
+        ({"reservoirs": {"gas": 50.0}}, r"reservoirs\.gas: must be a Reservoir, not 50\.0"),
+    ],
+)
+def test_a_table_that_is_none(change, message):
+    given = {"mesh": MESH, "regions": REGIONS, "boundaries": {"outside": Film(20.0, 25.0)}} | change
+    with pytest.raises(InputError, match=message):
+        Conduction(**given)
+
+
+@pytest.mark.parametrize(
+    ("times", "options", "message"),
+    [
+        (["a", "b"], {}, r"times: must be at least two finite, strictly increasing times, not \['a', 'b'\]"),
+        ((t for t in (0.0, 1.0)), {}, "times: must be at least two finite, strictly increasing times, not <generator"),
+        ([0.0, 1.0], {"initial": "25 degC"}, r"initial: must be a finite number or array \(49,\), not '25 degC'"),
+        ([0.0, 1.0], {"breakpoints": ["a"]}, r"breakpoints: must be finite times, not \['a'\]"),
+        ([0.0, 1.0], {"max_step": "1 s"}, "max_step: must be positive, not '1 s'"),
+    ],
+)
+def test_times_and_temperatures_that_are_no_numbers(times, options, message):
+    with pytest.raises(InputError, match=message):
+        Conduction(MESH, REGIONS, {"outside": Film(20.0, 25.0)}).transient(times, **options)
+
+
+@pytest.mark.parametrize("exchanges", [(2.0, 25.0), [(2.0,)], ["ab"]])
+def test_exchanges_are_pairs(exchanges):
+    with pytest.raises(InputError, match=r"exchanges: must be pairs \(conductance, other\), not "):
+        Reservoir(50.0, exchanges=exchanges)
+
+
+def test_a_function_cannot_change_the_temperatures_that_it_is_given():
+    """``T += 273.15`` in a film had given 342 instead of 331 degC, in a source no steady field."""
+
+    def film(T):
+        T -= 20.0
+        return 5.0 + abs(T)
+
+    def source(x, t, T):
+        T += 273.15
+        return 300.0 - T
+
+    for change in ({"boundaries": {"outside": Convection(film, 20.0)}}, {"sources": {"all": source}}):
+        given = {"mesh": MESH, "regions": REGIONS, "boundaries": {"outside": Film(20.0, 25.0)}} | change
+        with pytest.raises(ValueError, match="read-only"):
+            Conduction(**given).steady()

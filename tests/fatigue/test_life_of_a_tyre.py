@@ -37,6 +37,12 @@ def test_the_bead_has_no_table_and_is_left_out(at_60: LifeData) -> None:
     assert np.isfinite(at_60.km[at_60.members("carcass")]).all()
 
 
+def test_its_arrays_cannot_be_changed_in_place(at_60: LifeData) -> None:
+    for values in (at_60.km, at_60.normals, at_60.temperatures, at_60.element_km):
+        with pytest.raises(ValueError, match="read-only"):
+            values *= 1e3
+
+
 def test_normals_are_unit_vectors_and_energies_are_ordered(at_60: LifeData) -> None:
     inside = np.isfinite(at_60.km)
     np.testing.assert_allclose(np.linalg.norm(at_60.normals[inside], axis=-1), 1.0, rtol=1e-12)

@@ -155,6 +155,14 @@ def _tops(section: Section, s: float) -> list[float]:
     return [float(face - faces[0]) for face in faces[1:]]
 
 
+def test_meshes_can_be_compared_and_counted() -> None:
+    """An equality of scikit-fem's meshes has no truth value: ``mesh in meshes`` ended with a ValueError of numpy."""
+    first, second = (build(load("nasa-22x5.5-8pr"), size=12e-3, through=1) for _ in range(2))
+    assert first == first
+    assert first != second
+    assert len({first, second}) == 2
+
+
 @pytest.mark.parametrize(
     ("arguments", "field", "words"),
     [
@@ -165,9 +173,12 @@ def _tops(section: Section, s: float) -> list[float]:
         ({"size": 2e-6}, "size", "nodes; that takes about .* GiB of memory"),
         ({"size": 2.0}, "size", "too coarse"),
         ({"through": 0}, "through", "1 or more"),
+        ({"through": "2"}, "through", "1 or more, not '2'"),
+        ({"size": "2 mm"}, "size", "positive length, not '2 mm'"),
+        ({"section": "nasa-22x5.5-8pr"}, "section", "must be a section, as tyrefem.geometry.load gives it"),
     ],
 )
 def test_bad_requests_name_the_field(arguments: dict[str, object], field: str, words: str) -> None:
     with pytest.raises(InputError, match=words) as error:
-        build(load("nasa-22x5.5-8pr"), **arguments)  # type: ignore[arg-type]
+        build(**{"section": load("nasa-22x5.5-8pr"), **arguments})  # type: ignore[arg-type]
     assert error.value.field == field

@@ -16,6 +16,7 @@ from tyrefem.api import Comparison, Diagnosis, with_verbs
 from tyrefem.brief import Brief
 from tyrefem.compare import compare
 from tyrefem.diagnose import diagnosis as diagnosis_data
+from tyrefem.errors import InputError
 from tyrefem.mechanics.footprint.press import press
 
 
@@ -61,6 +62,9 @@ def test_a_tyre_is_pressed_and_its_frequencies_are_found_by_verbs(tmp_path: Path
     loaded = coarse.press(deflection=0.015)
     assert loaded.footprint.load == pytest.approx(press(coarse, deflection=0.015).footprint.load, rel=1e-12)
     assert loaded.footprint.motion == "linear"
+    pressure = loaded.footprint.pressure
+    with pytest.raises(ValueError, match="read-only"):
+        pressure /= 1e3
     assert loaded.save(tmp_path / "pressed", ["tread"], pictures=False, vtk=False) == tmp_path / "pressed"
     assert json.loads((tmp_path / "pressed/press.json").read_text(encoding="utf-8"))["motion"] == "linear"
     assert "tread" in (tmp_path / "pressed/strain-cycle.csv").read_text(encoding="utf-8").splitlines()[1]
@@ -82,3 +86,18 @@ def test_a_comparison_has_verbs_and_its_data_have_none(tmp_path: Path) -> None:
     data = compare(study, inputs=False)
     assert not hasattr(data, "save")
     assert data.to_dict() == comparison.to_dict()
+
+
+def test_a_curve_names_its_peak_and_a_rolling_tyre_takes_one_temperature(tmp_path: Path) -> None:
+    coarse = tf.study("nasa-22x5.5-8pr", {"mesh.size": "16 mm", "mechanics.motion": "linear"})
+    for options, where in (({"slip_angle": [0.0, 0.05]}, "0.05 rad"), ({"slip": [0.01, 0.05]}, "slip 0.05")):
+        curve = coarse.slip_curve(**options, tolerance=0.5)
+        assert f"peak                 {curve.peak['force_N']:.5g} N at {where}" in repr(curve)
+    rolled = coarse.roll(slip=0.01, tolerance=0.5)
+    for values in (rolled.state.force, rolled.state.moment, rolled.state.power_map):
+        with pytest.raises(ValueError, match="read-only"):
+            values /= 1e3
+    for temperature, message in (("80 degC", "did you mean 80"), (float("nan"), "must be finite")):
+        with pytest.raises(InputError, match=f"temperature: .*{message}"):
+            rolled.to_vtk(tmp_path, temperature)  # type: ignore[arg-type]
+    assert list(tmp_path.iterdir()) == []

@@ -14,7 +14,7 @@ from tyrefem.errors import InputError
 from tyrefem.heating_test.card import RigCard
 from tyrefem.heating_test.files import find, tables
 from tyrefem.heating_test.layer_cards import bases
-from tyrefem.rig import load, read
+from tyrefem.rig import load, read, simulate
 
 pytestmark = pytest.mark.fast
 
@@ -119,7 +119,7 @@ BAD = [
     (TABLE + "2000,50,30,30\n", [], "lasts until 2000 s"),
     (TABLE.replace("outer [degC]", "outer [degC],spare [degC]").replace("0,22", "0,1,22"), [], "line"),
     (TABLE.replace("interface", "couple"), ["--without", "interface"], "'couple' is no sensor of the rig"),
-    (TABLE, ["--without", "inne"], "unknown sensor 'inne'; did you mean 'inner'"),
+    (TABLE, ["--without", "inne"], "--without: unknown sensor 'inne'; did you mean 'inner'"),
     (TABLE, ["--base", "nasa-treed"], "did you mean 'nasa-tread'"),
     (TABLE, ["--base", "traed=nasa-tread"], "unknown layer 'traed'; did you mean 'tread'"),
 ]
@@ -177,3 +177,26 @@ def test_readings_of_a_fast_logger_are_averaged_but_not_over_a_switch(here: Path
     before = outer_series.times < 60.0
     assert float(outer_series.counts[before].sum()) == (~gap & (t < 60.0)).sum()
     assert outer_series.matrix.sum(axis=1) == pytest.approx(np.ones(outer_series.times.size))
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"every": "5 s"}, "every: must be a number in s, not '5 s'"),
+        ({"every": 0.0}, "every: must be more than 0 s, not 0 s"),
+        ({"every": 1e5}, "every: 100000 s leaves no reading"),
+        ({"seed": -1}, "seed: must be a whole number of at least 0, not -1"),
+        ({"seed": "a"}, "seed: must be a whole number of at least 0, not 'a'"),
+    ],
+)
+def test_errors_of_python_name_the_argument(options: dict[str, Any], message: str) -> None:
+    with pytest.raises(InputError, match=f"^{message}"):
+        simulate("trtlab", **options)
+
+
+def test_errors_of_the_command_name_the_option(here: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    assert main(["rig", "simulate", "trtlab", "--every", "1e5 s", "--out", "out"]) == 2
+    assert "--every: 100000 s leaves no reading" in capfd.readouterr().err
+    card, _ = load("trtlab")
+    with pytest.raises(InputError, match=r"^without: unknown sensor 'inne'; did you mean 'inner'\?"):
+        read(card, [], ["inne"])

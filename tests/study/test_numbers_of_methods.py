@@ -16,6 +16,8 @@ from tyrefem.api.numbers import check_numbers
 from tyrefem.errors import InputError
 from tyrefem.measured import read_table
 from tyrefem.quantity import registry
+from tyrefem.variants.execution import Execution, SweepSettings
+from tyrefem.variants.schedulers import Local
 
 pytestmark = pytest.mark.fast
 
@@ -96,6 +98,19 @@ def coarse() -> tf.Study:
         ("diagnose", {"calibration": [1]}, r"calibration: must be a path, as text or Path, not \[1\]"),
         ("at_amplitudes", {"amplitudes": {"tred": 0.1}}, "no region 'tred'; did you mean 'tread'"),
         ("replace", {"changes": None}, "changes must be a table like"),
+        ("scaled", {"key": "drive.speed", "factor": "2"}, "factor: must be a number, not '2'"),
+        ("scaled", {"key": 3, "factor": 2.0}, r"3 is not a dotted name such as drive\.speed"),
+        ("sweep", {"vary": SPEEDS, "tolerance": math.inf}, "tolerance: must be finite"),
+        ("sweep", {"vary": SPEEDS, "tolerance": True}, "tolerance: must be a number of kelvins, not True"),
+        ("explore", {"tolerance": math.inf}, "tolerance: must be a positive number of kelvins, not inf"),
+        ("sweep", {"vary": {"drive.speed": iter(["10 mph"])}}, "vary: must be a list of values or a tuple"),
+        ("sweep", {"vary": {"drive.speed": (each for each in "ab")}}, "vary: must be a list of values or a tuple"),
+        ("sweep", {"cases": Path("none.csv")}, r"none\.csv: cannot be read: No such file"),
+        (
+            "replace",
+            {"changes": {"drive.speed": (each for each in "ab")}},
+            r"drive\.speed: <generator .* is not",
+        ),
     ],
 )
 def test_an_argument_that_cannot_be(coarse: tf.Study, method: str, options: dict[str, Any], message: str) -> None:
@@ -107,6 +122,41 @@ def test_numbers_of_every_kind_pass() -> None:
     check_numbers(load=np.float64(4e3), drum_diameter=math.inf, slips=np.array([0.1]), friction=lambda speed, _: speed)
     check_numbers(slip_angle=(0.1, np.int64(0)), pressure=None, cambers=[], curve=True)
     check_numbers(load=np.array(4e3), loads=(each for each in (3e3, 4e3)))
+
+
+def test_numbers_of_numpy_and_paths_are_taken_by_a_sweep(coarse: tf.Study, tmp_path: Path) -> None:
+    assert Execution(tolerance=np.float32(0.5)).tolerance == Execution(tolerance=np.int64(1)).tolerance / 2
+    assert Local(np.int64(2)).workers == 2
+    assert coarse.scaled("drive.speed", np.float32(2)).data["drive"]["speed"] == "40 mph"
+    (tmp_path / "cases.csv").write_text("name,drive.speed [mph]\n1,10\n2,20\n", encoding="utf-8")
+    design = coarse.sweep(cases=tmp_path / "cases.csv", tolerance=np.float32(0.01))
+    assert design.table["variant"].tolist() == ["1", "2"]
+
+
+@pytest.mark.parametrize("workers", [0, -1, 1.5, "2", None, True])
+def test_workers_and_settings_of_a_sweep_are_whole_numbers(workers: Any) -> None:
+    with pytest.raises(InputError, match="workers: must be a whole number of at least 1, not"):
+        Local(workers)
+    if workers is not True:
+        with pytest.raises(InputError, match=r"settings\.piece: must be a whole number of at least 1, not"):
+            SweepSettings(piece=workers)
+
+
+def test_a_case_may_be_named_by_a_number(coarse: tf.Study, tmp_path: Path) -> None:
+    (tmp_path / "cases.csv").write_text("name,drive.speed [mph]\n1,10\n2,20\n", encoding="utf-8")
+    campaign = coarse.replace({"cases": tmp_path / "cases.csv"})
+    assert campaign.case(2).data == campaign.case("2").data
+    with pytest.raises(InputError, match=r"no case '\[2\]'; did you mean '2'"):
+        campaign.case([2])  # type: ignore[arg-type]
+
+
+def test_heat_of_an_unknown_kind_is_not_nothing(coarse: tf.Study) -> None:
+    budget = coarse.run().heat_budget
+    assert budget.total("sliding") == 0
+    assert budget.total("generated") == pytest.approx(budget.table.query("kind == 'generated'")["energy_J"].sum())
+    for method in (budget.total, budget.power):
+        with pytest.raises(InputError, match="kind: no heat of the kind 'generatd'; did you mean 'generated'"):
+            method("generatd")
 
 
 def test_arguments_of_a_comparison_and_of_a_plan() -> None:

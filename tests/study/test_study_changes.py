@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 import copy
+import json
+import pickle
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pint
 import pytest
 
 import tyrefem as tf
+from tyrefem.errors import InputError
 from tyrefem.variants.plan import plan_of
 
 pytestmark = pytest.mark.fast
@@ -122,3 +127,39 @@ def test_a_sweep_takes_quantities(study):
     for vary in (speeds, (*speeds, 2)):
         plan = plan_of(study, {"drive.speed": vary})
         assert [variant["drive.speed"] for variant in plan.variants] == ["10 mph", "20 mph"]
+
+
+def test_what_a_study_was_read_from_cannot_be_changed() -> None:
+    """``study.data["drive"]["speed"] = ...`` had left the run at the old speed, and its files said the new one."""
+    study = tf.study("hidden-effect")
+    data: Any = study.data
+    changes: list[Callable[[], object]] = [
+        lambda: data["drive"].__setitem__("speed", "25 mph"),
+        lambda: data["drive"].update(speed="25 mph"),
+        lambda: data["drive"].pop("load"),
+        lambda: data.__ior__({"title": "mine"}),
+        lambda: data["measured"].append({}),
+        lambda: data["measured"][0].__delitem__("table"),
+        lambda: data["measured"].__iadd__([{}]),
+    ]
+    before = json.dumps(data)
+    for again in (study, study.replace({"drive.load": "3000 lbf"}), pickle.loads(pickle.dumps(study))):
+        data = again.data
+        for change in changes:
+            with pytest.raises(InputError, match=r"a study does not change; study\.replace\("):
+                change()
+    assert json.dumps(study.data) == before
+
+
+def test_a_copy_of_what_a_study_was_read_from_can_be_changed() -> None:
+    study = tf.study("nasa-22x5.5-8pr")
+    data: Any = copy.deepcopy(study.data)
+    assert data == study.data
+    data["drive"]["speed"] = "25 mph"
+    faster = tf.Study("faster", data, None, study.folder)
+    data["drive"]["speed"] = "30 mph"
+    assert faster.data["drive"]["speed"] == "25 mph"
+    assert faster.card.drive.value("speed", 0.0) == pytest.approx(25 * 0.44704)
+    assert study.data["drive"]["speed"] == "20 mph"
+    assert copy.deepcopy(faster).data == faster.data
+    assert (study.data | {"title": "mine"})["title"] == "mine"

@@ -10,6 +10,8 @@ import pytest
 
 import tyrefem as tf
 from tyrefem import library
+from tyrefem.reports.explore_data import changes_of_file
+from tyrefem.reports.inputs import study_text
 from tyrefem.variants.task import bundle
 
 
@@ -92,3 +94,41 @@ def test_study_inside_the_folder_of_a_clone(tmp_path: Path, monkeypatch: pytest.
     for other in (tf.study(study.save(clone / "out" / "study.toml")), bundle(study).unpacked(clone / "worker")):
         assert other.section.outer_diameter == study.section.outer_diameter
         assert other.data["materials"]["tread"] == "nasa-tread"
+
+
+def test_its_own_file_is_known_after_a_change_of_the_working_directory(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A script that goes into the folder for its results: the study read by a relative path is not the one there."""
+    quick = {"mesh.size": "20 mm", "mesh.through": 1, "drive.duration": "10 s", "output.every": "10 s"}
+    home, other = tmp_path / "home", tmp_path / "other"
+    own = tf.study("nasa-22x5.5-8pr", quick).save(home / "study.toml")
+    own.write_text(f"# mine\n{own.read_text(encoding='utf-8')}", encoding="utf-8")
+    other.mkdir()
+    monkeypatch.chdir(home)
+    study = tf.study("study.toml")
+    monkeypatch.chdir(other)
+    assert study_text(study) == (own.read_text(encoding="utf-8"), True)
+    assert changes_of_file(study.replace({"drive.speed": "25 mph"})) == {"drive.speed": "25 mph"}
+    result = study.run()
+    result.save(other)
+    assert tf.study(other / "study.toml").data == study.data
+    result.save(home)
+    result.save(home, force=True)
+    assert own.read_text(encoding="utf-8").startswith("# mine\n")
+
+
+def test_a_record_is_read_after_a_change_of_the_working_directory(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("verdict", "summary"):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / f"{name}.json").write_text(
+            '{"command": "press", "verdict": "no gap", "study": "tyre", "sets": []}', encoding="utf-8"
+        )
+    (tmp_path / "summary" / "harmonics.csv").write_text("n\n1\n", encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    pressed, diagnosed = tf.load("summary"), tf.load("verdict")
+    monkeypatch.chdir("/")
+    assert pressed.table("harmonics")["n"].tolist() == [1]
+    assert pressed.summary["study"] == diagnosed.summary["study"] == "tyre"

@@ -52,6 +52,15 @@ def test_all_friction_energy_is_shared_out() -> None:
 
 
 @pytest.mark.fast
+def test_its_arrays_cannot_be_changed_in_place() -> None:
+    """``depth *= 1e3`` for millimetres would have changed what `save` writes."""
+    wear = rings()
+    for values in (wear.depth_per_km, wear.places, wear.power):
+        with pytest.raises(ValueError, match="read-only"):
+            values *= 1e3
+
+
+@pytest.mark.fast
 def test_exponent_and_slipping_backwards() -> None:
     once, twice = rings(50.0, exponent=2.0), rings(100.0, exponent=2.0)
     np.testing.assert_allclose(twice.depth_per_km / once.depth_per_km, 4.0, rtol=1e-12)

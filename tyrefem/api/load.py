@@ -72,7 +72,7 @@ def load(folder: str | Path) -> Result | Comparison | DiagnosisRecord | Record:
         if not {"verdict", "study", "sets"} <= set(read_json(place / "verdict.json")):
             raise InputError("is damaged, or no verdict of 'tyrefem diagnose'", file=place / "verdict.json")
         whole = not (place / SUMMARY).is_file() or bool(read_json(place / SUMMARY).get(COMPLETE, True))
-        return DiagnosisRecord(place, "diagnose", whole)
+        return DiagnosisRecord(place.absolute(), "diagnose", whole)
     if not (place / SUMMARY).is_file():
         raise InputError(
             f"is no folder of results: it has neither {FILE} nor {SUMMARY}; 'tyrefem run STUDY --out FOLDER' makes one",
@@ -89,7 +89,7 @@ def load(folder: str | Path) -> Result | Comparison | DiagnosisRecord | Record:
         )
     if not isinstance(command, str):
         raise InputError(f"is no folder of results: its {SUMMARY} names no command of tyrefem", file=place)
-    return Record(place, command, bool(summary.get(COMPLETE, True)))
+    return Record(place.absolute(), command, bool(summary.get(COMPLETE, True)))
 
 
 def _study(place: Path) -> Study | None:

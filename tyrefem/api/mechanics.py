@@ -7,6 +7,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from tyrefem.api.numbers import check_numbers
 from tyrefem.api.verbs import with_verbs
 from tyrefem.mechanics.footprint import natural_frequencies as vibrations
 from tyrefem.mechanics.footprint import press as presses
@@ -110,10 +111,12 @@ class RollingWheel(rolls.RolledStudy):
 
         Raises
         ------
-        InputError : the folder cannot be written.
+        InputError : no number; the folder cannot be written.
         """
         from tyrefem.reports.roll import write_vtk
 
+        if not callable(temperature):
+            check_numbers(temperature=temperature)
         return write_vtk(self, as_path(folder, "folder"), temperature)
 
 

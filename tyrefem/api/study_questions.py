@@ -213,6 +213,8 @@ class StudyQuestions(studies.StudyData):
         progress : called with (stage, finished, total).
         further : tables of other questions, by their names.
 
+        Ctrl-C ends the sweep with what is finished; ``interrupted`` of the design says so.
+
         The keys of a sweep file: docs/sweeps.md.
 
         >>> from tyrefem import study

@@ -11,5 +11,6 @@ object. `tests/architecture/test_caches.py` checks these rules.
 from tyrefem.cache.cache import Cache
 from tyrefem.cache.content import Content
 from tyrefem.cache.fingerprint import fingerprint
+from tyrefem.cache.read_only import read_only
 
-__all__ = ["Cache", "Content", "fingerprint"]
+__all__ = ["Cache", "Content", "fingerprint", "read_only"]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -24,6 +26,16 @@ RigArgument = Annotated[str, typer.Argument(metavar="RIG", help="A rig's name, r
 OutOption = Annotated[Path | None, typer.Option("--out", help="Folder; default: results/rig-...")]
 #: Typical number of simulated tests in the fit of one model, for the progress bar.
 _USUAL = 16
+
+
+@contextmanager
+def _naming_option(name: str) -> Iterator[None]:
+    """Errors of the argument ``name`` in this block name the option of the command."""
+    try:
+        yield
+    except InputError as error:
+        field = f"--{name}" if error.field == name else error.field
+        raise InputError(error.message, field=field, file=error.file) from None
 
 
 @group.command()
@@ -55,7 +67,8 @@ def simulate(
         ) as folder,
         progress(f"{_name(file)}: simulated tests"),
     ):
-        done = rigs.simulate(file, every=step, seed=seed)
+        with _naming_option("every"):
+            done = rigs.simulate(file, every=step, seed=seed)
         write_simulation(done, folder)
     rows = {name: run.temperatures.max().round(2).to_dict() for name, run in done.runs.items()}
     answer_with({"highest_degC": rows, "words": done.words, "folder": folder})
@@ -99,7 +112,8 @@ def identify(
     card, file = rigs.load(rig)
     warn(warning.within(file=file) for warning in card.warnings())
     given = tables_of(card, file, tables or ())
-    tests = rigs.read(card, given, without or (), rename=renamed(rename), ignore=ignore or ())
+    with _naming_option("without"):
+        tests = rigs.read(card, given, without or (), rename=renamed(rename), ignore=ignore or ())
     chosen = bases(card, base or [])
     count = 0
     total = _USUAL * len(tests)

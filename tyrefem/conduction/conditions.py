@@ -201,7 +201,10 @@ class Reservoir:
         _check(self.power, "power")
         if self.initial is not None:
             _check(self.initial, "initial")
-        for conductance, other in self.exchanges:
+        for pair in self.exchanges:
+            if not isinstance(pair, (tuple, list)) or len(pair) != 2:
+                raise InputError(f"must be pairs (conductance, other), not {pair!r:.60}", field="exchanges")
+            conductance, other = pair
             _check(conductance, "exchanges", low=0.0)
             if not isinstance(other, str):
                 _check(other, "exchanges")

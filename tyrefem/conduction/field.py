@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from tyrefem.brief import Brief
+from tyrefem.cache import read_only
 from tyrefem.conduction.budget import Budget
 from tyrefem.conduction.conditions import Material
 from tyrefem.conduction.operators import Operators
@@ -22,9 +23,9 @@ from tyrefem.errors import InputError, nearest
 Array = NDArray[Any]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Field(Brief):
-    """Temperatures of the body and its reservoirs at one time.
+    """Temperatures of the body and its reservoirs at one time; its arrays are read-only.
 
     Attributes
     ----------
@@ -41,6 +42,9 @@ class Field(Brief):
     generated: Mapping[str, float]
     lost: Mapping[str, float]
     time: float | None = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "values", read_only(self.values))
 
     def _facts(self) -> Mapping[str, Any]:
         return {
@@ -120,9 +124,9 @@ class Peak:
     time: float
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class History(Brief):
-    """A transient solution.
+    """A transient solution; its arrays are read-only.
 
     Attributes
     ----------
@@ -145,6 +149,11 @@ class History(Brief):
     steps: Steps
     interrupted: bool = False
     states: Array = field(default_factory=lambda: np.zeros((0, 0)))
+
+    def __post_init__(self) -> None:
+        for name in ("times", "values", "states"):
+            object.__setattr__(self, name, read_only(getattr(self, name)))
+        object.__setattr__(self, "reservoirs", {name: read_only(T) for name, T in self.reservoirs.items()})
 
     def _facts(self) -> Mapping[str, Any]:
         peak, end = self.maximum, self.values[-1]

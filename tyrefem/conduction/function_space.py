@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_matrix
 from skfem.assembly.form.form import FormExtraParams
 
+from tyrefem.cache import read_only
 from tyrefem.errors import InputError, nearest
 
 Array = NDArray[Any]
@@ -37,6 +38,22 @@ def integrand(form: skfem.BilinearForm, phi: Array, slopes: Array | None = None,
     return np.asarray(form.form(T, v, FormExtraParams(data)))
 
 
+def kind_of(mesh: Any) -> str:
+    """Kind of a mesh's elements, "tri" or "quad".
+
+    Raises
+    ------
+    InputError : an unsupported mesh.
+
+    >>> kind_of(skfem.MeshTri())
+    'tri'
+    """
+    kind = {"MeshTri": "tri", "MeshQua": "quad"}.get(type(mesh).__name__[:7])
+    if kind is None:
+        raise InputError(f"a {type(mesh).__name__} is not supported; use MeshTri or MeshQuad", field="mesh")
+    return kind
+
+
 class FunctionSpace:
     """Shape functions, quadrature and the common CSR pattern of a mesh.
 
@@ -58,9 +75,7 @@ class FunctionSpace:
     """
 
     def __init__(self, mesh: Any, element: str = "P1", axisymmetric: bool = True) -> None:
-        kind = {"MeshTri": "tri", "MeshQua": "quad"}.get(type(mesh).__name__[:7])
-        if kind is None:
-            raise InputError(f"a {type(mesh).__name__} is not supported; use MeshTri or MeshQuad", field="mesh")
+        kind = kind_of(mesh)
         if element not in ("P1", "P2"):
             raise InputError(f"unknown element {element!r}{nearest(str(element), ['P1', 'P2'])}", field="element")
         if axisymmetric and mesh.p[0].min() < -1e-12 * np.ptp(mesh.p, axis=1).max():
@@ -70,7 +85,8 @@ class FunctionSpace:
         self.intorder = 3 if element == "P1" else 5
         self.basis = skfem.Basis(mesh, self.skfem_element, intorder=self.intorder)
         self.size = int(self.basis.N)
-        self.points: Array = self.basis.doflocs
+        #: Read-only: problems on an equal mesh share the space.
+        self.points: Array = read_only(self.basis.doflocs)
         self.element_dofs: Array = self.basis.element_dofs
         shape = self.basis.dx.shape
         self.phi = np.broadcast_to(

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_matrix, hstack
 
-from tyrefem.cache import Cache, fingerprint
+from tyrefem.cache import Cache, fingerprint, read_only
 from tyrefem.conduction.equation import conduction, storage
 from tyrefem.conduction.function_space import FunctionSpace
 from tyrefem.conduction.linear_solver import Ordering
@@ -72,8 +72,8 @@ class Operators(FunctionSpace):
         return self._cached(("dofs", name), lambda: np.unique(self.element_dofs[:, self.elements(name)]))
 
     def nodes(self, name: str) -> Array:
-        """Points (2, n) of a named subdomain: the same array object at every call."""
-        return self._cached(("nodes", name), lambda: np.ascontiguousarray(self.points[:, self.dofs(name)]))
+        """Points (2, n) of a named subdomain: the same array object at every call, read-only."""
+        return self._cached(("nodes", name), lambda: read_only(np.ascontiguousarray(self.points[:, self.dofs(name)])))
 
     def _gather(self, elements: Array, local: Array) -> Array:
         place = self.place[:, :, elements]

@@ -20,6 +20,7 @@ from tyrefem.conduction.conditions import (
     is_number,
 )
 from tyrefem.conduction.field import Field, History, Steps
+from tyrefem.conduction.function_space import kind_of
 from tyrefem.conduction.operators import operators_of
 from tyrefem.conduction.statement import balance_of, check_partition
 from tyrefem.conduction.steady import anchored, solve_steady
@@ -52,7 +53,8 @@ class Conduction:
     reservoirs : name -> `Reservoir`, coupled by films whose sink is that name.
     states : additional unknowns with a rate.
 
-    Raises InputError for names, materials or conditions that are inconsistent with the mesh.
+    Arrays given to functions are read-only. Raises InputError for names, materials or conditions that are inconsistent
+    with the mesh.
 
     >>> import numpy as np, skfem
     >>> from tyrefem.conduction import Film, Fixed
@@ -81,7 +83,15 @@ class Conduction:
         reservoirs: Mapping[str, Reservoir] | None = None,
         states: AddedStates | None = None,
     ) -> None:
+        kind_of(mesh)
         _check_memory(mesh, element)
+        tables = {"boundaries": boundaries or {}, "sources": sources or {}, "reservoirs": reservoirs or {}}
+        for name, table in {"regions": regions, **tables}.items():
+            if not isinstance(table, Mapping):
+                raise InputError(f"must be a mapping of names, not {table!r:.60}", field=name)
+        for name, reservoir in tables["reservoirs"].items():
+            if not isinstance(reservoir, Reservoir):
+                raise InputError(f"must be a Reservoir, not {reservoir!r:.60}", field=f"reservoirs.{name}")
         self.operators = operators_of(mesh, element, axisymmetric)
         self.regions, self.sources = dict(regions), dict(sources or {})
         self.reservoirs, self.states = dict(reservoirs or {}), states
@@ -125,7 +135,7 @@ class Conduction:
         size = self.operators.size
         before = dict(initial.reservoirs) if isinstance(initial, Field) else {}
         values = initial.values if isinstance(initial, Field) else initial
-        u = np.array(values, dtype=float)
+        u = _numbers(values, "initial", f"a finite number or array ({size},)")
         if u.shape not in ((), (size,)) or not np.isfinite(u).all():
             raise InputError(f"must be a finite number or array ({size},), not {u.shape}", field="initial")
         u = np.full(size, float(u)) if u.ndim == 0 else u
@@ -284,9 +294,17 @@ class Conduction:
         return np.array(run.values), {name: gas[:, i] for i, name in enumerate(self.reservoirs)}
 
 
+def _numbers(values: Any, field: str, wanted: str) -> Array:
+    """A new array of numbers."""
+    try:
+        return np.array(values, dtype=float)
+    except (TypeError, ValueError, OverflowError):
+        raise InputError(f"must be {wanted}, not {values!r:.60}", field=field) from None
+
+
 def _checked_times(times: ArrayLike) -> Array:
     """Times of a transient as an array, s."""
-    when = np.array(times, dtype=float)
+    when = _numbers(times, "times", "at least two finite, strictly increasing times")
     if when.ndim != 1 or when.size < 2 or not np.isfinite(when).all() or np.any(np.diff(when) <= 0):
         raise InputError("must be at least two finite, strictly increasing times", field="times")
     return when
@@ -305,10 +323,10 @@ def _integration(
     if not (is_number(tolerance) and np.isfinite(tolerance) and tolerance > 0):
         raise InputError(f"must be positive, not {tolerance!r}", field="tolerance")
     _check_kept(balance.ops.size, when.size)
-    jumps = np.asarray(breakpoints, dtype=float)
+    jumps = _numbers(breakpoints, "breakpoints", "finite times")
     if jumps.ndim != 1 or not np.isfinite(jumps).all():
         raise InputError("must be finite times", field="breakpoints")
-    if max_step is not None and not max_step > 0:
+    if max_step is not None and not (is_number(max_step) and max_step > 0):
         raise InputError(f"must be positive, not {max_step!r}", field="max_step")
     least = smallest_tolerance(float(np.abs(start.u).max()))
     if tolerance < least:

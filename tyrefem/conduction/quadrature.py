@@ -11,6 +11,7 @@ import skfem
 from numpy.typing import NDArray
 from scipy.sparse import csr_matrix
 
+from tyrefem.cache import read_only
 from tyrefem.conduction.equation import conduction, exchange, storage
 from tyrefem.conduction.function_space import FunctionSpace, integrand
 from tyrefem.errors import InputError, nearest
@@ -69,7 +70,7 @@ class Surface:
             message = f"elements at boundary {name!r} are too thin or distorted: {error}"
             raise InputError(message, field="boundaries") from error
         x = np.asarray(basis.global_coordinates())
-        self.name, self.x = name, np.ascontiguousarray(x.reshape(2, -1))
+        self.name, self.x = name, read_only(np.ascontiguousarray(x.reshape(2, -1)))
         self.weight = (basis.dx * (2 * np.pi * x[0] if space.axisymmetric else 1.0)).reshape(-1)
         self.area = float(self.weight.sum())
         phi = np.stack([np.broadcast_to(np.asarray(b[0]), basis.dx.shape) for b in basis.basis])
@@ -81,7 +82,7 @@ class Surface:
         self.trace = csr_matrix((phi[used], (q[used], column)), shape)
         self.trace_t = self.trace.T.tocsr()
         self.row = self.trace_t @ self.weight
-        self.points = np.ascontiguousarray(space.points[:, self.dofs])
+        self.points = read_only(np.ascontiguousarray(space.points[:, self.dofs]))
         # From h times the weights at the points to the operator values of the film on the common pattern.
         shape = (len(phi), *phi.shape)
         i, j = np.broadcast_to(dofs[:, None], shape), np.broadcast_to(dofs[None], shape)

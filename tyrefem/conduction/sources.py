@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -9,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_matrix
 
+from tyrefem.cache import read_only
 from tyrefem.conduction.conditions import is_number
 from tyrefem.conduction.datum import checked
 from tyrefem.conduction.operators import Operators
@@ -27,6 +29,8 @@ class SourceLoad(Load):
         if not self.static and not callable(q):
             raise InputError(f"must be a number or f(x, t, T), not {q!r}", field=self._field)
         self.q: Any = float(q) if self.static else q
+        if self.static and not math.isfinite(self.q):
+            raise InputError(f"must be finite, not {self.q!r}", field=self._field)
         self.x, self.dofs = ops.nodes(name), ops.dofs(name)
         self.all_dofs = self.dofs.size == ops.size
         self.row = ops.mass_row(name)[self.dofs]
@@ -39,7 +43,7 @@ class SourceLoad(Load):
     def at_nodes(self, t: float, u: Array) -> Array:
         """Source at the nodes, (n_nodes,)."""
         T = u if self.all_dofs else u[self.dofs]
-        value = self.q if self.static else checked(self.q(self.x, t, T), self.dofs.size, self._field, t)
+        value = self.q if self.static else checked(self.q(self.x, t, read_only(T)), self.dofs.size, self._field, t)
         return np.full(self.dofs.shape, value) if isinstance(value, float) else value
 
     def slope(self, t: float, u: Array, bump: float) -> Array:

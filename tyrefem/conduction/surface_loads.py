@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_matrix
 
+from tyrefem.cache import read_only
 from tyrefem.conduction.conditions import Convection, Film, Flux, Radiation
 from tyrefem.conduction.datum import Datum, checked
 from tyrefem.conduction.operators import Surface
@@ -160,7 +161,7 @@ class ConvectionLoad(Load):
         self.s, self.h, self.sink, self._field = surface, convection.h, float(convection.sink), f"{field}.h"
 
     def _loss(self, T: Array, t: float) -> Array:
-        h = checked(self.h(T), T.size, self._field, t)
+        h = checked(self.h(read_only(T)), T.size, self._field, t)
         if np.min(h) < 0:
             raise InputError(f"is negative between {T.min():.6g} and {T.max():.6g} degC", field=self._field)
         return np.asarray(h * (T - self.sink))

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
+from tyrefem.cache import read_only
 from tyrefem.errors import InputError
 from tyrefem.fatigue.cracking_energy import products
 from tyrefem.fatigue.duty import Duty, WarmRevolutions
@@ -37,6 +38,8 @@ NEEDS = Requirements("a fatigue life")
 LONGEST_KM = 1e12
 #: Highest temperature of a quick look, degC.
 HOTTEST = 300.0
+#: Fields of a life that are arrays.
+ARRAYS = ("km", "normals", "temperatures", "peak", "valley", "stretch", "opening", "drift", "shares")
 #: Points whose planes are searched together.
 TOGETHER = 64
 
@@ -73,6 +76,10 @@ class LifeData(Brief):
     drift: Array
     shares: Array
 
+    def __post_init__(self) -> None:
+        for name in ARRAYS:
+            object.__setattr__(self, name, read_only(getattr(self, name)))
+
     def _title(self) -> str:
         return f"of {self.study.name}"
 
@@ -92,7 +99,7 @@ class LifeData(Brief):
         that much rubber, and single points at the sharp end of a layer depend on the mesh."""
         weights = self.rings.weights / self.rings.weights.sum(axis=1, keepdims=True)
         with np.errstate(divide="ignore"):
-            return np.asarray(np.exp((weights * np.log(self.km)).sum(axis=1)))
+            return read_only(np.exp((weights * np.log(self.km)).sum(axis=1)))
 
     @functools.cached_property
     def typical(self) -> Indices:

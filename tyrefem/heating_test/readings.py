@@ -96,10 +96,10 @@ def read(
     """
     for name in without:
         if name not in card.sensors:
-            raise InputError(f"unknown sensor '{name}'{nearest(name, card.sensors)}", field="--without")
+            raise InputError(f"unknown sensor '{name}'{nearest(name, card.sensors)}", field="without")
     wanted = [name for name in card.sensors if name not in without]
     if not wanted:
-        raise InputError("no sensor is left", field="--without")
+        raise InputError("no sensor is left", field="without")
     names, columns = ColumnNames.of(ignore=ignore, rename=rename), list[str]()
     heating_tests: dict[str, HeatingTest] = {}
     for table in tables:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from numbers import Integral, Real
 from pathlib import Path
 from typing import Any
 
@@ -93,7 +94,7 @@ def simulate(
     seed : seed of the instruments' noise; None: no noise.
     values : parameters to change, by name, e.g. ``{"tread.conductivity": 0.3, "outer.offset": 0.1}``.
 
-    Raises InputError if the rig is impossible or a parameter is unknown.
+    Raises InputError if the rig is impossible, a number cannot be, or a parameter is unknown.
 
     >>> done = simulate("trtlab", every=60.0, fineness=Fineness(2, 5, 2))
     >>> readings = done.runs["high"].temperatures
@@ -103,9 +104,13 @@ def simulate(
     card, file = (rig, None) if isinstance(rig, RigCard) else load(rig)
     import pandas as pd
 
-    check_readings(card.phases.end, every, "--every", _MOST)
+    if isinstance(every, bool) or not isinstance(every, Real):
+        raise InputError(f"must be a number in s, not {every!r:.60}", field="every")
+    if seed is not None and (not isinstance(seed, Integral) or seed < 0):
+        raise InputError(f"must be a whole number of at least 0, not {seed!r:.60}", field="seed")
+    check_readings(card.phases.end, every, "every", _MOST)
     if every > card.phases.end:
-        raise InputError(f"{every:g} s leaves no reading after the first of {card.phases.end:g} s", field="--every")
+        raise InputError(f"{every:g} s leaves no reading after the first of {card.phases.end:g} s", field="every")
     sensors = tuple(card.sensors)
     parameters = parameters_of(card, sensors)
     known = parameters.values(np.zeros(len(parameters)))

@@ -53,7 +53,7 @@ class StudyOrigin:
 
     def names(self, folder: Path) -> tuple[str, ...]:
         """Name of the study's file in a folder of results; empty where the study's own file stands in its place."""
-        target, read = folder / self.file, self.study.file
+        target, read = folder / self.file, self.study.file_read
         return () if read is not None and target.resolve() == read.resolve() else (self.file,)
 
     def wrote(self, file: Path) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from numbers import Real
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
@@ -29,7 +30,7 @@ class StudyData(StudyContents):
     Parameters
     ----------
     name : name of the study.
-    data : the file as written (units in the text).
+    data : the file as written (units in the text); it cannot be changed.
     file : file of the study; None: the study was not read from a file.
     folder : folder of relative references (cards, tables).
     like : another study of the same cards, whose parts are reused where the two do not differ.
@@ -108,11 +109,18 @@ class StudyData(StudyContents):
 
         An uncertain number with several names (c10 and c01 of one compound) is multiplied at all of them.
 
+        Raises
+        ------
+        InputError : no number of that name; a factor that is no number, or that gives a value which is not allowed.
+
         >>> radial = study("passenger-205-55r16").scaled("materials.body-ply.conductivity.value", 2.0)
         >>> radial.materials["turn-up"].conductivity.value == radial.materials["body-ply"].conductivity.value
         True
         """
-        return self.replace(uncertain_number(self, key).changes(factor))
+        check_changes_table({key: factor})
+        if isinstance(factor, bool) or not isinstance(factor, Real):
+            raise InputError(f"must be a number, not {factor!r:.60}", field="factor")
+        return self.replace(uncertain_number(self, key).changes(factor if isinstance(factor, int) else float(factor)))
 
     def with_drive(self, changes: Mapping[str, Any]) -> Self:
         """A new study with other values in its ``[drive]`` table."""
@@ -180,7 +188,7 @@ class StudyData(StudyContents):
         >>> study("nasa-campaign").case("8pr-3270lbf-83psi-20mph").data["drive"]["load"]
         '3270 lbf'
         """
-        by_name = {case.name: case for case in self.cases}
+        name, by_name = str(name), {case.name: case for case in self.cases}
         if name not in by_name:
             raise InputError(f"no case '{name}'{nearest(name, by_name)}", file=self.cases_file)
         return self.case_study(by_name[name])

@@ -15,6 +15,7 @@ from tyrefem.inputs.sensor_places import sensor_place
 from tyrefem.inputs.study_card import MeasuredEntry, Sensor, StudyCard
 from tyrefem.inputs.study_effects import check_effects
 from tyrefem.inputs.study_parts import StudyParts, error_as_written
+from tyrefem.inputs.study_table import fixed
 from tyrefem.inputs.uncertain_numbers import UncertainNumber, uncertain_numbers
 from tyrefem.inputs.warnings import study_warnings
 from tyrefem.inputs.wheel_checks import check_rim_temperature, check_wheel_states
@@ -32,7 +33,7 @@ class StudyContents(Brief):
     Parameters
     ----------
     name : name of the study.
-    data : the file as written (units in the text).
+    data : the file as written (units in the text); it cannot be changed.
     file : file of the study; None: the study was not read from a file.
     folder : folder of relative references (cards, tables).
     like : another study of the same cards, whose parts are reused where the two do not differ.
@@ -52,6 +53,7 @@ class StudyContents(Brief):
     parts: StudyParts = field(init=False, repr=False)
 
     def __post_init__(self, like: StudyContents | None, built: StudyParts | None) -> None:
+        object.__setattr__(self, "data", fixed(self.data))
         parts = built or StudyParts.read(self.data, self.file, self.folder, None if like is None else like.parts)
         object.__setattr__(self, "parts", parts)
         if built is None:
@@ -82,6 +84,13 @@ class StudyContents(Brief):
             "uncertain": f"{len(self.uncertainty)} numbers",
             **({"cases": self.card.cases} if self.is_campaign else {}),
         }
+
+    @property
+    def file_read(self) -> Path | None:
+        """``file`` as an absolute path, also after a change of the working directory."""
+        if self.file is None or self.folder is None or self.file.is_absolute():
+            return self.file
+        return self.folder / self.file.name
 
     @property
     def is_campaign(self) -> bool:

@@ -158,7 +158,12 @@ def written(value: Any) -> Any:
         return _with_unit(written(value.magnitude), _unit_text(value.units))
     if hasattr(value, "tolist"):
         return written(value.tolist())
-    return str(value) if isinstance(value, Path) else copy.deepcopy(value)
+    if isinstance(value, Path):
+        return str(value)
+    try:
+        return copy.deepcopy(value)
+    except TypeError:  # a generator: who reads the value refuses it by its name
+        return value
 
 
 def _with_unit(number: Any, unit: str) -> Any:

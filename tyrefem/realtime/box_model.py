@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from numbers import Real
@@ -121,7 +122,7 @@ def explored(
         in real time. NotReducibleError : the tolerance was not reached.
     """
     NEEDS.check(study)
-    if tolerance is not None and not (isinstance(tolerance, Real) and tolerance > 0):
+    if tolerance is not None and not (isinstance(tolerance, Real) and 0 < tolerance < math.inf):
         raise InputError(f"must be a positive number of kelvins, not {tolerance!r:.60}", field="tolerance")
     if scheduler is not None and not hasattr(scheduler, "outcomes"):
         raise InputError(f"must be Here, Local or Dask, not {scheduler!r:.60}", field="scheduler")

@@ -60,7 +60,7 @@ def run_dataset(result: ResultData, readings: range | None = None) -> xarray.Dat
 
     return library.Dataset(
         {
-            "reading": variable(("time", "sensor"), table[sensors].to_numpy(), "reading of a sensor", "degC"),
+            "reading": variable(("time", "sensor"), table[sensors].to_numpy(copy=True), "reading of a sensor", "degC"),
             "temperature": variable(("time", "node"), result.history.values[chosen], "temperature", "degC"),
             "gas_temperature": variable(
                 ("time",), result.gas_temperature[chosen], "temperature of the contained air", "degC"
@@ -71,15 +71,15 @@ def run_dataset(result: ResultData, readings: range | None = None) -> xarray.Dat
             "heat_power": variable(
                 ("time", "heat"), np.array(list(powers.values())).T[chosen], "power, of the whole tyre", "W"
             ),
-            "cell_nodes": variable(("cell", "corner"), cells.T, "numbers of a cell's nodes, from 0"),
+            "cell_nodes": variable(("cell", "corner"), np.array(cells.T), "numbers of a cell's nodes, from 0"),
             "region": variable(("cell",), names[parent].astype(str), "region of the section"),
         },
         coords={
             "time": variable(("time",), np.asarray(result.times)[chosen], "time", "s"),
             "sensor": sensors,
             "node": np.arange(operators.size),
-            "r": variable(("node",), operators.points[0], "radius", "m"),
-            "z": variable(("node",), operators.points[1], "axial position", "m"),
+            "r": variable(("node",), operators.points[0].copy(), "radius", "m"),
+            "z": variable(("node",), operators.points[1].copy(), "axial position", "m"),
             "heat": [f"{kind}: {name}" for kind, name in powers],
         },
         attrs={

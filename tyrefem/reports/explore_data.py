@@ -61,9 +61,9 @@ def argument(study: StudyData) -> str:
     """The study as a command takes it: the name by which its file is found from here, or its path from here."""
     from tyrefem import library
 
-    if study.file is None:
+    path = study.file_read
+    if path is None:
         return study.name
-    path = Path(study.file)
     named = library.names("study").get(study.name)
     if named is not None and named.resolve() == path.resolve():
         return study.name
@@ -75,10 +75,10 @@ def changes_of_file(study: StudyData) -> dict[str, Any]:
 
     A table in which a name has a dot is one value: a dotted name could not reach into it.
     """
-    if study.file is None:
+    if study.file_read is None:
         return {}
     try:
-        before = read_toml(Path(study.file))
+        before = read_toml(study.file_read)
     except InputError:
         return {}
 

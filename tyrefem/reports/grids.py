@@ -40,7 +40,7 @@ class Plane:
 
     def at_points(self, values: Array) -> Array:
         """Values (n,) of the section's unknowns at the points."""
-        return values
+        return values.copy()
 
     def at_cells(self, values: Array) -> Array:
         """Values (n,) of the section's elements in the cells."""

@@ -121,8 +121,9 @@ def _sources(data: Any, where: str) -> Iterator[tuple[str, str]]:
 
 def study_text(study: StudyData) -> tuple[str, bool]:
     """The study's file and True; if values were changed, the study as it was run and False."""
-    if study.file is not None and study.file.is_file():
-        text = study.file.read_text(encoding="utf-8-sig")
+    file = study.file_read
+    if file is not None and file.is_file():
+        text = file.read_text(encoding="utf-8-sig")
         try:
             if tomllib.loads(text) == dict(study.data):
                 return text, True

@@ -10,6 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
+from tyrefem.cache import read_only
+from tyrefem.errors import InputError, nearest
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -17,6 +19,9 @@ if TYPE_CHECKING:
     from tyrefem.conduction.budget import Budget
 
 Array = NDArray[np.float64]
+
+#: What a budget counts; heat of friction only with slip, lumped bodies only where there are some.
+KINDS = ("generated", "sliding", "stored", "lost", "lumped")
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,6 +37,8 @@ class HeatBudget(Brief):
         slip), ``stored`` (by region), ``lost`` (by boundary), ``lumped`` (gas, rim; J only).
     residual : (n,) J, generated + sliding - stored - lost. ``imbalance`` : largest residual over the largest
         throughput. ``floor`` : J, less is rounding (`tyrefem.conduction.budget.Budget`).
+
+    All arrays are read-only.
     """
 
     times: Array
@@ -40,6 +47,12 @@ class HeatBudget(Brief):
     residual: Array
     imbalance: float
     floor: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name in ("energies", "powers"):
+            object.__setattr__(self, name, {key: read_only(each) for key, each in getattr(self, name).items()})
+        for name in ("times", "residual"):
+            object.__setattr__(self, name, read_only(getattr(self, name)))
 
     def _facts(self) -> Mapping[str, Any]:
         kinds = dict.fromkeys(kind for kind, _ in self.energies if kind != "lumped")
@@ -52,7 +65,13 @@ class HeatBudget(Brief):
         }
 
     def total(self, kind: str) -> float:
-        """Energy of a kind at the end, J."""
+        """Energy of a kind at the end, J; 0 of a kind that the run has not.
+
+        Raises
+        ------
+        InputError : no such kind.
+        """
+        _check_kind(kind)
         return float(sum(series[-1] for (k, _), series in self.energies.items() if k == kind))
 
     @property
@@ -75,7 +94,8 @@ class HeatBudget(Brief):
         return self.total("generated") + self.total("sliding")
 
     def power(self, kind: str) -> Array:
-        """Power of a kind over time, (n,) W."""
+        """Power of a kind over time, (n,) W; errors as `total`."""
+        _check_kind(kind)
         return np.asarray(
             sum((series for (k, _), series in self.powers.items() if k == kind), np.zeros(len(self.times)))
         )
@@ -127,6 +147,11 @@ class HeatBudget(Brief):
                 entry["power_W"] = row["power_W"]
             shares.setdefault(row["kind"], {})[row["name"]] = entry
         return shares
+
+
+def _check_kind(kind: str) -> None:
+    if kind not in KINDS:
+        raise InputError(f"no heat of the kind '{kind}'{nearest(str(kind), KINDS)}", field="kind")
 
 
 #: (boundary, number of the condition) -> name in the budget.

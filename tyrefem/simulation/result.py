@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from tyrefem.boundaries.contained_air import ATMOSPHERE
 from tyrefem.brief import SHOWN, Brief
+from tyrefem.cache import read_only
 from tyrefem.conduction.field import History
 from tyrefem.conduction.points import OutsideMeshError, as_points
 from tyrefem.errors import InputError
@@ -56,7 +57,8 @@ KEPT = (
 class ResultData(Brief):
     """A finished (or interrupted) run of a study.
 
-    It can be pickled with study, mesh, strain cycles and temperatures; all else is computed again.
+    It can be pickled with study, mesh, strain cycles and temperatures; all else is computed again. Its arrays are
+    read-only, and its tables are the caller's: a change of them leaves the result as it is.
     """
 
     study: StudyData
@@ -162,7 +164,7 @@ class ResultData(Brief):
         """(n_sensors, 2) places of the sensors in the mesh, (r, z), m."""
         return self._inside(list(self.sensor_places.values()))
 
-    @functools.cached_property
+    @property
     def readings(self) -> pd.DataFrame:
         """`reading_columns` as a table; ``readings.attrs["units"]``: column -> unit."""
         import pandas as pd
@@ -185,7 +187,8 @@ class ResultData(Brief):
         """Sensor -> recorded readings, (n_times,) degC."""
         if not self.sensor_places:
             return {}
-        return recorded(self.study, self.times, self.at(self.sensor_points))
+        columns = recorded(self.study, self.times, self.at(self.sensor_points))
+        return {name: read_only(column) for name, column in columns.items()}
 
     @property
     def rim_temperature(self) -> Array | None:
@@ -200,7 +203,7 @@ class ResultData(Brief):
     @functools.cached_property
     def gas_temperature(self) -> Array:
         """Contained-air temperature, (n_times,) degC."""
-        return contained_air(self.study, self.times, self.history.reservoirs)
+        return read_only(contained_air(self.study, self.times, self.history.reservoirs))
 
     @functools.cached_property
     def gas_pressure(self) -> Array:
@@ -208,7 +211,7 @@ class ResultData(Brief):
 
         p + p_atm = (p_phase + p_atm) T / T_start, p_phase being the drive's (cold) pressure.
         """
-        return np.array([self.pressure_at(i) for i in range(len(self.times))])
+        return read_only([self.pressure_at(i) for i in range(len(self.times))])
 
     def pressure_at(self, i: int) -> float:
         """Gauge pressure of the contained air at ``times[i]``, Pa."""
@@ -220,9 +223,9 @@ class ResultData(Brief):
         wall = wall_of(self.tyre.mesh)
         field = self.history.field(len(self.times) - 1)
         inner, outer = (np.asarray(field.at(points)) for points in (wall.inner, wall.outer))
-        return wall.s, np.abs(inner - outer) / wall.thickness
+        return read_only(wall.s), read_only(np.abs(inner - outer) / wall.thickness)
 
-    @functools.cached_property
+    @property
     def gradient_at_sensors(self) -> pd.DataFrame:
         """|grad T| at every sensor, K/m, shaped as `readings`; 0 for lumped temperatures."""
         table = self.readings * 0.0
@@ -247,16 +250,16 @@ class ResultData(Brief):
             apart = np.linalg.norm(ends[0] - ends[1], axis=1)
             # At the crown of a half section, both ends are the same point, where the slope along the meridian is zero.
             squares += ((self.at(ends[0]) - self.at(ends[1])) / np.where(apart > 0, apart, np.inf)) ** 2
-        return dict(zip(self.sensor_places, np.sqrt(squares).T, strict=True))
+        return dict(zip(self.sensor_places, read_only(np.sqrt(squares)).T, strict=True))
 
-    @functools.cached_property
+    @property
     def extremes(self) -> pd.DataFrame:
         """`extreme_rows` as a table."""
         import pandas as pd
 
         return pd.DataFrame(self.extreme_rows)
 
-    @functools.cached_property
+    @property
     def extreme_rows(self) -> list[dict[str, Any]]:
         """Highest temperature of the tyre and of every region over the whole run, with place and time."""
         rows = []

@@ -64,7 +64,13 @@ class CampaignData(Brief):
         return cls(study, study.cases)
 
     def case_study(self, case: Case) -> StudyData:
-        """The study of a case."""
+        """The study of a case.
+
+        Raises
+        ------
+        InputError : no case of a table; errors of the case.
+        """
+        _check_case(case)
         return self.study.case_study(case)
 
     def runs(self, progress: Callable[[int, int], None] | None = None) -> Iterator[tuple[Case, ResultData | str]]:
@@ -98,13 +104,27 @@ class CampaignData(Brief):
             )
 
     def outcome(self, case: Case) -> ResultData | str:
-        """The result of a case, or the reason of its failure."""
+        """The result of a case, or the reason of its failure.
+
+        Raises
+        ------
+        InputError : no case of a table.
+        """
+        _check_case(case)
         try:
             return run(self.case_study(case), partial=True)
         except (InputError, SolverError) as error:
             return str(error)
         except Exception as error:  # a defect in a case must not stop the other cases
             return f"defect, please report: {type(error).__name__}: {error}"
+
+
+def _check_case(case: object) -> None:
+    if not isinstance(case, Case):
+        raise InputError(
+            f"must be one of the campaign's cases, not {case!r:.60}; study.case(NAME) is the study of a name",
+            field="case",
+        )
 
 
 def _has_no_section(study: StudyData, case: Case) -> bool:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from numbers import Integral, Real
 from pathlib import Path
 from typing import TypedDict
 
@@ -30,7 +32,7 @@ class SweepSettings:
 
     Raises
     ------
-    InputError : a number below 1.
+    InputError : no whole number, or one below 1.
     """
 
     single: int = 2000
@@ -41,8 +43,8 @@ class SweepSettings:
 
     def __post_init__(self) -> None:
         for name, number in dataclasses.asdict(self).items():
-            if number < 1:
-                raise InputError(f"must be at least 1, not {number}", field=f"settings.{name}")
+            if not isinstance(number, Integral) or number < 1:
+                raise InputError(f"must be a whole number of at least 1, not {number!r:.60}", field=f"settings.{name}")
 
 
 class ExecutionOptions(TypedDict, total=False):
@@ -71,8 +73,8 @@ class Execution:
 
     Raises
     ------
-    InputError : an unknown value of ``reduced``; a tolerance that is not positive; what is no scheduler, folder or
-        settings.
+    InputError : an unknown value of ``reduced``; a tolerance that is not positive and finite; what is no
+        scheduler, folder or settings.
 
     >>> Execution().given({"reduced": "never"}).reduced
     'never'
@@ -89,10 +91,12 @@ class Execution:
     def __post_init__(self) -> None:
         if self.reduced not in REDUCED:
             raise InputError(f"'{self.reduced}' is not allowed; allowed: {', '.join(REDUCED)}", field="reduced")
-        if not isinstance(self.tolerance, int | float):
-            raise InputError(f"must be a number of kelvins, not {self.tolerance!r}", field="tolerance")
+        if isinstance(self.tolerance, bool) or not isinstance(self.tolerance, Real):
+            raise InputError(f"must be a number of kelvins, not {self.tolerance!r:.60}", field="tolerance")
         if not self.tolerance > 0:
             raise InputError(f"must be positive, not {self.tolerance:g} K", field="tolerance")
+        if math.isinf(self.tolerance):
+            raise InputError("must be finite: any reduced model would do", field="tolerance")
         if self.scheduler is not None and not hasattr(self.scheduler, "outcomes"):
             raise InputError(f"must be Here, Local or Dask, not {self.scheduler!r:.60}", field="scheduler")
         if self.folder is not None:

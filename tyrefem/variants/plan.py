@@ -275,7 +275,7 @@ def card_of(study: StudyData, vary: Mapping[str, Any] | None = None, **options: 
         its levels as third entry; a list has the values; a mapping has the keys of a sweep file.
     options : other keys of a sweep file; None: not given.
     """
-    data = {key: value for key, value in options.items() if value is not None}
+    data = {key: written(value) for key, value in options.items() if value is not None}
     if not isinstance(vary, Mapping | None):
         example = "{'drive.speed': ('10 mph', '40 mph')}"
         raise InputError(f"must be a mapping like {example}, not {vary!r:.60}", field="vary")

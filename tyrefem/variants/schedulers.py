@@ -8,10 +8,12 @@ import tempfile
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
+from numbers import Integral
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from tyrefem.cache import Cache
+from tyrefem.errors import InputError
 from tyrefem.processes import processes
 from tyrefem.variants.outcomes import Failed
 
@@ -54,10 +56,16 @@ class Local:
     """Runs tasks in ``workers`` processes of this machine. A task whose process dies is repeated once, alone.
 
     As a context manager it keeps its processes, and their assembled operators, from call to call.
+
+    Raises
+    ------
+    InputError : ``workers`` is no whole number of at least 1.
     """
 
     def __init__(self, workers: int) -> None:
-        self.workers = workers
+        if isinstance(workers, bool) or not isinstance(workers, Integral) or workers < 1:
+            raise InputError(f"must be a whole number of at least 1, not {workers!r:.60}", field="workers")
+        self.workers: int = int(workers)
         self._kept: ExitStack | None = None
         self._pool: Executor | None = None
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.cache import read_only
 from tyrefem.errors import InputError
 from tyrefem.materials.wear import Wear
 from tyrefem.mechanics.cycle_schedule import CycleSchedule, cycle_schedule
@@ -47,9 +48,7 @@ class DriveWear(RingWear):
     @functools.cached_property
     def depth_per_km(self) -> Array:
         """(m,) depth worn per kilometre, m."""
-        return np.asarray(
-            sum(share * state.depth_per_km for share, state in zip(self.shares, self.states, strict=True))
-        )
+        return read_only(sum(share * state.depth_per_km for share, state in zip(self.shares, self.states, strict=True)))
 
 
 def _schedule(study: StudyData) -> CycleSchedule:

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
+from tyrefem.cache import read_only
 from tyrefem.errors import InputError
 from tyrefem.materials.wear import Wear
 
@@ -50,6 +51,10 @@ class RingWear(Brief):
     table: Wear
     rubber: float = 1.0
 
+    def __post_init__(self) -> None:
+        for name in ("places", "widths", "power"):
+            object.__setattr__(self, name, read_only(getattr(self, name)))
+
     def _facts(self) -> Mapping[str, Any]:
         return {
             "mean": f"{self.mean * 1e6:.4g} mm per 1000 km",
@@ -70,7 +75,7 @@ class RingWear(Brief):
     @functools.cached_property
     def depth_per_km(self) -> Array:
         """(m,) depth worn per kilometre, m."""
-        return np.asarray(self.table.of(self.energy) * 1e3 / self.travel)
+        return read_only(self.table.of(self.energy) * 1e3 / self.travel)
 
     @property
     def mean(self) -> float:

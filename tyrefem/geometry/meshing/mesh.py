@@ -9,6 +9,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -34,7 +35,7 @@ class PlyDirection:
         return np.ascontiguousarray(np.moveaxis(self.section.ply_direction(np.asarray(x).T), -1, 0))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class TyreMesh(Brief, PickledFields):
     """A mesh of a section in (r, z) [m].
 
@@ -238,14 +239,16 @@ def build(
     >>> bool(abs(tyre.area("tread") / tyre.section.area("tread") - 1) < 1e-2)
     True
     """
+    if not isinstance(section, Section):
+        raise InputError(f"must be a section, as tyrefem.geometry.load gives it, not {section!r:.60}", field="section")
     if mesher not in MESHERS:
         raise InputError(f"no mesher '{mesher}'{nearest(mesher, MESHERS)}", field="mesher")
     cell = cell or CELLS[mesher][0]
     if cell not in CELLS[mesher]:
         raise InputError(f"no cell '{cell}'{nearest(cell, CELLS[mesher])}", field="cell")
-    if not (math.isfinite(size) and size > 0):
-        raise InputError(f"must be a positive length, not {size!r}", field="size")
-    if through < 1 or through != int(through):
+    if not isinstance(size, Real) or not (math.isfinite(size) and size > 0):
+        raise InputError(f"must be a positive length, not {size!r:.60}", field="size")
+    if not isinstance(through, Real) or not math.isfinite(through) or through < 1 or through != int(through):
         raise InputError(f"must be a whole number, 1 or more, not {through!r}", field="through")
     if size > section.line.length / 4:
         raise InputError(

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
+from tyrefem.cache import read_only
 from tyrefem.mechanics.footprint.grid import ContactGrid
 from tyrefem.mechanics.footprint.tyre_on_road import TyreOnRoad
 
@@ -126,7 +127,7 @@ class Footprint(Brief):
     def pressure(self) -> Array:
         """(n_angles, m) contact pressure at angles >= 0 and tread nodes, Pa; linear in the angle."""
         share = np.repeat(self.grid.sides, len(self.grid.tread.nodes))
-        return np.asarray(self.forces / (share * self.grid.areas)).reshape(self.grid.n_angles, -1)
+        return read_only(self.forces / (share * self.grid.areas)).reshape(self.grid.n_angles, -1)
 
     @property
     def pressure_integral(self) -> float:

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.brief import Brief
+from tyrefem.cache import read_only
 from tyrefem.mechanics.footprint.footprint import BEYOND
 from tyrefem.mechanics.rolling.body_loss import BodyLoss
 from tyrefem.mechanics.rolling.contact_patch import ContactPatch
@@ -100,12 +101,12 @@ class RolledTyre(Brief):
     @functools.cached_property
     def force(self) -> Array:
         """(3,) F_x, F_y, F_z, N."""
-        return np.asarray(self._iso.sum(axis=1))
+        return read_only(self._iso.sum(axis=1))
 
     @functools.cached_property
     def moment(self) -> Array:
         """(3,) overturning M_x, rolling M_y, aligning M_z, N m."""
-        return np.asarray(np.cross(self.places.T, self._iso.T).sum(axis=0))
+        return read_only(np.cross(self.places.T, self._iso.T).sum(axis=0))
 
     @functools.cached_property
     def torque(self) -> float:
@@ -186,7 +187,7 @@ class RolledTyre(Brief):
         opened = np.where(upstream >= 0, contact.gaps - contact.gaps[upstream], 0.0)
         relative = np.column_stack([opened, contact.ways])
         work = -((contact.forces + before) / 2 * relative).sum(axis=1)
-        return self._map(work * self.spin / self.grid.step)
+        return read_only(self._map(work * self.spin / self.grid.step))
 
     @property
     def power_by_ring(self) -> Array:

@@ -67,7 +67,12 @@ class SlipCurve(Brief):
         return f"of {self.study.name} over {self.varied.replace('_', ' ')}"
 
     def _facts(self) -> Mapping[str, Any]:
-        return {"cornering stiffness": f"{self.stiffness.cornering / 1e3:.4g} kN/rad", "peak": self.peak}
+        peak = self.peak
+        where = f"{peak['slip_angle_rad']:.4g} rad" if self.varied == "slip_angle" else f"slip {peak['slip']:.4g}"
+        return {
+            "cornering stiffness": f"{self.stiffness.cornering / 1e3:.4g} kN/rad",
+            "peak": f"{peak['force_N']:.5g} N at {where}",
+        }
 
     @property
     def study(self) -> StudyData:
