@@ -28,6 +28,8 @@ LEFT_BEHIND = "ignore:resource_tracker:UserWarning"
 GARBAGE = 100_000
 #: Priority of what a worker does last.
 LAST = -1000
+#: Environment variable with which Python does not look for modules in the current folder.
+SAFE_PATH = "PYTHONSAFEPATH"
 #: Exit code of a worker that would start workers while it imports its parent's script.
 UNGUARDED = 78
 
@@ -37,7 +39,7 @@ class _ProcessWithoutCtrlC(SpawnProcess):
 
     def start(self) -> None:
         """Start it with the signal blocked; the process inherits this."""
-        with _blocked():
+        with _blocked(), _standard_modules():
             super().start()
         _STARTED.add(self)
 
@@ -107,7 +109,8 @@ def _start_tracker() -> None:
         return
     sys.warnoptions.append(LEFT_BEHIND)
     try:
-        resource_tracker.ensure_running()
+        with _standard_modules():
+            resource_tracker.ensure_running()
     finally:
         sys.warnoptions.remove(LEFT_BEHIND)
 
@@ -148,6 +151,23 @@ def end_children() -> None:
     for child in active_children():
         with suppress(OSError):
             child.terminate()
+
+
+@contextmanager
+def _standard_modules() -> Iterator[None]:
+    """Processes started here find no modules in the current folder before they have the parent's path.
+
+    Else a user's file there with the name of a standard module, such as ``signal.py``, would end them at their start.
+    """
+    before = os.environ.get(SAFE_PATH)
+    os.environ[SAFE_PATH] = "1"
+    try:
+        yield
+    finally:
+        if before is None:
+            os.environ.pop(SAFE_PATH, None)
+        else:
+            os.environ[SAFE_PATH] = before
 
 
 @contextmanager
