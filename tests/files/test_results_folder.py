@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 import signal
@@ -13,7 +14,7 @@ from typing import Any
 import pytest
 from filelock import FileLock
 
-from tyrefem.errors import InputError
+from tyrefem.errors import InputError, ResultWarning
 from tyrefem.output import atomic_folder, atomic_path, note_input, reading, write_json
 from tyrefem.output.folder import results_folder
 
@@ -197,6 +198,17 @@ def test_two_commands_at_once_are_one_too_many(tmp_path: Path) -> None:
         run(tmp_path, "readings.csv")
     run(tmp_path, "readings.csv")
     assert files(tmp_path) == {"summary.json", "readings.csv"}
+
+
+@pytest.mark.skipif(os.name != "posix", reason="Windows locks in another way")
+def test_a_file_system_without_locks_holds_results(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def flock(*_: object) -> None:
+        raise OSError(errno.ENOLCK, "No locks available")
+
+    monkeypatch.setattr("fcntl.flock", flock)
+    with pytest.warns(ResultWarning, match="its file system has no locks"):
+        run(tmp_path / "out", "readings.csv")
+    assert files(tmp_path / "out") == {"summary.json", "readings.csv"}
 
 
 def test_ctrl_c_while_the_folder_is_locked_leaves_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -8,16 +8,18 @@ While a command writes, ``complete`` is false.
 
 from __future__ import annotations
 
+import errno
 import hashlib
 import json
 import os
+import warnings
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any
 
-from tyrefem.errors import InputError
+from tyrefem.errors import InputError, ResultWarning
 from tyrefem.interruption import interruption_delayed
 from tyrefem.output import (
     SUMMARY,
@@ -39,6 +41,8 @@ from tyrefem.output.origin import ResultsOrigin
 COMMAND, COMPLETE, FILES, CHECKSUMS, WRITING = "command", "complete", "files", "checksums", "writing"
 ARGUMENTS, FILES_READ, VERSIONS = "arguments", "files_read", "versions"
 BOOKKEEPING = (COMMAND, ARGUMENTS, FILES_READ, COMPLETE, FILES, CHECKSUMS, WRITING)
+#: Errors of a file system that has no locks.
+NO_LOCKS = (errno.ENOLCK, errno.ENOTSUP, errno.EOPNOTSUPP, errno.ENOSYS)
 #: Largest number of foreign files in an error.
 NAMED = 5
 
@@ -113,10 +117,13 @@ def results_folder(
 
 @contextmanager
 def _locked(folder: Path) -> Iterator[None]:
-    """Lock the folder for this process until the process ends, even by a crash."""
+    """Lock the folder for this process until the process ends, even by a crash.
+
+    Some network file systems have no locks: there results are written without one.
+    """
     from filelock import FileLock, Timeout  # imports asyncio
 
-    lock = FileLock(folder / f"{TEMPORARY}lock")
+    lock, unlocked = FileLock(folder / f"{TEMPORARY}lock"), False
     try:
         try:
             folder.mkdir(parents=True, exist_ok=True)
@@ -129,13 +136,18 @@ def _locked(folder: Path) -> Iterator[None]:
                 field="--out",
             ) from None
         except OSError as error:
-            raise InputError(f"cannot be written: {error.strerror or error}", file=folder, field="--out") from None
+            if error.errno not in NO_LOCKS:
+                raise InputError(f"cannot be written: {error.strerror or error}", file=folder, field="--out") from None
+            message = f"{folder}: its file system has no locks; only one command at a time may write into this folder"
+            warnings.warn(message, ResultWarning, stacklevel=2)
+            unlocked = True
         yield
     finally:
         with interruption_delayed():
-            if lock.is_locked:
+            if lock.is_locked or unlocked:
                 with suppress(OSError):
                     os.unlink(lock.lock_file)
+            if lock.is_locked:
                 lock.release()
 
 
