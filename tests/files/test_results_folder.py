@@ -248,6 +248,13 @@ def test_what_is_no_folder_is_refused(tmp_path: Path, make: object, message: str
     assert os.path.lexists(place)
 
 
+def test_a_drive_that_is_not_there_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    # On Windows the folder above Q:\\ is Q:\\ itself, whether or not there is such a drive.
+    monkeypatch.setattr(os.path, "lexists", lambda _: False)
+    with pytest.raises(InputError, match="there is no such drive"):
+        run(tmp_path / "out", "readings.csv")
+
+
 def test_this_folder_is_a_folder_too(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     with results_folder(".", "run", NAMES, origin=None) as place, atomic_folder(place) as temporary:
