@@ -28,7 +28,5 @@ def check_file_name(name: str, of: str, field: str, others: Iterable[str] = ()) 
         raise InputError(message, field=field)
     alike = next((other for other in others if other != name and other.casefold() == name.casefold()), None)
     if alike is not None:
-        message = (
-            f"'{alike}' and '{name}' differ only in capital letters: on Windows and macOS their files would be one"
-        )
+        message = f"'{alike}' and '{name}' differ only in capital letters: on Windows and macOS their files are one"
         raise InputError(message, field=field)
