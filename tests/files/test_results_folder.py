@@ -190,6 +190,20 @@ def test_finished_work_stays_for_another_try(tmp_path: Path) -> None:
     assert (tmp_path / "cases" / "a.json").is_file()
 
 
+@pytest.mark.parametrize("force", [False, True])
+def test_a_case_in_other_capital_letters_keeps_its_files(force: bool, tmp_path: Path) -> None:
+    def case(name: str) -> None:
+        with results_folder(tmp_path, "run", [f"cases/{name}/*.csv"], origin=None, force=force) as place:
+            write(place, f"cases/{name}/readings.csv")
+
+    case("A")
+    # As on Windows and macOS, where both names are one folder.
+    (tmp_path / "cases" / "a").symlink_to("A")
+    case("a")
+    assert summary(tmp_path)["files"] == ["cases/a/readings.csv"]
+    assert (tmp_path / "cases" / "a" / "readings.csv").read_text(encoding="utf-8") == "cases/a/readings.csv"
+
+
 def test_two_commands_at_once_are_one_too_many(tmp_path: Path) -> None:
     with (
         results_folder(tmp_path, "run", NAMES, origin=None),

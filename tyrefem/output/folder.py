@@ -13,7 +13,7 @@ import hashlib
 import json
 import os
 import warnings
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from fnmatch import fnmatchcase
 from pathlib import Path
@@ -208,7 +208,7 @@ class ResultsFolder(WriteGuard):
                 file=self.folder,
                 field="--out",
             )
-        foreign = [name for name in present if name not in self._listed]
+        foreign = [name for name in present if not self._is_among(name, self._listed)]
         if foreign:
             listed = ", ".join(foreign[:NAMED]) + (", ..." if len(foreign) > NAMED else "")
             raise InputError(
@@ -233,8 +233,8 @@ class ResultsFolder(WriteGuard):
         name = self._name(path)
         if name is None:
             return
-        known = name == SUMMARY or name in self._listed or name in self._written or _matches(name, self._being_written)
-        if os.path.lexists(path) and not known and not self.force:
+        known = name == SUMMARY or name in self._written or _matches(name, self._being_written)
+        if os.path.lexists(path) and not (known or self.force or self._is_among(name, self._listed)):
             raise InputError(
                 f"was not written by 'tyrefem {self.command}', or has changed since; see --force", file=path
             )
@@ -275,7 +275,8 @@ class ResultsFolder(WriteGuard):
         kept = {str(name) for name in self._summary.get(FILES, [])}
         for name in sorted(set(self._listed) - set(self._written) - kept - {SUMMARY}):
             if not _matches(name, self._keeps):
-                self._remove(self.folder / name)
+                if not self._is_among(name, self._written):
+                    self._remove(self.folder / name)
                 del self._listed[name]
         self._write_summary(complete=bool(self._summary.get(COMPLETE, True)))
 
@@ -353,6 +354,15 @@ class ResultsFolder(WriteGuard):
         with suppress(ValueError):
             return Path(os.path.abspath(path)).relative_to(self.folder).as_posix()
         return None
+
+    def _is_among(self, name: str, others: Collection[str]) -> bool:
+        """Whether a file is one of these, perhaps in other capital letters: on Windows and macOS that is one file."""
+        if name in others:
+            return True
+        alike = [other for other in others if other.casefold() == name.casefold()]
+        with suppress(OSError):
+            return any(os.path.samefile(self.folder / name, self.folder / other) for other in alike)
+        return False
 
     def _is_input(self, path: Path) -> bool:
         with suppress(OSError):
