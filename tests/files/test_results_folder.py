@@ -225,6 +225,19 @@ def test_a_file_system_without_locks_holds_results(tmp_path: Path, monkeypatch: 
     assert files(tmp_path / "out") == {"summary.json", "readings.csv"}
 
 
+def test_a_lock_of_another_user_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def acquire(lock: FileLock, timeout: float) -> None:
+        raise PermissionError(errno.EACCES, "Permission denied", lock.lock_file)
+
+    monkeypatch.setattr(FileLock, "acquire", acquire)
+    with pytest.raises(InputError) as error:
+        run(tmp_path, "readings.csv")
+    assert error.value.file == tmp_path
+    (tmp_path / ".tyrefem-lock").touch()
+    with pytest.raises(InputError, match=r"\.tyrefem-lock: --out: cannot be written: Permission denied"):
+        run(tmp_path, "readings.csv")
+
+
 def test_ctrl_c_while_the_folder_is_locked_leaves_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     acquire = FileLock.acquire
 

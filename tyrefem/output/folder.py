@@ -137,7 +137,9 @@ def _locked(folder: Path) -> Iterator[None]:
             ) from None
         except OSError as error:
             if error.errno not in NO_LOCKS:
-                raise InputError(f"cannot be written: {error.strerror or error}", file=folder, field="--out") from None
+                # The lock of another user's command that was killed is still there.
+                place = Path(lock.lock_file) if os.path.lexists(lock.lock_file) else folder
+                raise InputError(f"cannot be written: {error.strerror or error}", file=place, field="--out") from None
             message = f"{folder}: its file system has no locks; only one command at a time may write into this folder"
             warnings.warn(message, ResultWarning, stacklevel=2)
             unlocked = True
