@@ -129,20 +129,21 @@ def _locked(folder: Path) -> Iterator[None]:
             folder.mkdir(parents=True, exist_ok=True)
             with interruption_delayed():
                 lock.acquire(timeout=0)
-        except Timeout:
-            raise InputError(
-                "another command is writing into this folder; wait for it, or choose another folder",
-                file=folder,
-                field="--out",
-            ) from None
-        except OSError as error:
-            if error.errno not in NO_LOCKS:
+        except (OSError, NotImplementedError) as error:
+            unlocked = _without_locks(lock.lock_file)
+            if not unlocked and isinstance(error, Timeout):
+                raise InputError(
+                    "another command is writing into this folder; wait for it, or choose another folder",
+                    file=folder,
+                    field="--out",
+                ) from None
+            if not unlocked:
                 # The lock of another user's command that was killed is still there.
                 place = Path(lock.lock_file) if os.path.lexists(lock.lock_file) else folder
-                raise InputError(f"cannot be written: {error.strerror or error}", file=place, field="--out") from None
+                reason = getattr(error, "strerror", None) or error
+                raise InputError(f"cannot be written: {reason}", file=place, field="--out") from None
             message = f"{folder}: its file system has no locks; only one command at a time may write into this folder"
             warnings.warn(message, ResultWarning, stacklevel=2)
-            unlocked = True
         yield
     finally:
         with interruption_delayed():
@@ -151,6 +152,20 @@ def _locked(folder: Path) -> Iterator[None]:
                     os.unlink(lock.lock_file)
             if lock.is_locked:
                 lock.release()
+
+
+def _without_locks(file: str) -> bool:
+    """Whether the file system has no locks. Some versions of filelock take that for the lock of another command."""
+    try:
+        import fcntl
+    except ImportError:  # Windows
+        return False
+    try:
+        with open(file, "rb") as stream:
+            fcntl.flock(stream, fcntl.LOCK_SH | fcntl.LOCK_NB)
+    except OSError as error:
+        return error.errno in NO_LOCKS
+    return False
 
 
 class ResultsFolder(WriteGuard):
