@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import gc
 import os
+import shutil
 import signal
 import sys
+import tempfile
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -28,6 +30,8 @@ LEFT_BEHIND = "ignore:resource_tracker:UserWarning"
 GARBAGE = 100_000
 #: Priority of what a worker does last.
 LAST = -1000
+#: Environment variable with which Python does not look for modules in the current folder.
+SAFE_PATH = "PYTHONSAFEPATH"
 #: Exit code of a worker that would start workers while it imports its parent's script.
 UNGUARDED = 78
 
@@ -37,7 +41,7 @@ class _ProcessWithoutCtrlC(SpawnProcess):
 
     def start(self) -> None:
         """Start it with the signal blocked; the process inherits this."""
-        with _blocked():
+        with _blocked(), _standard_modules():
             super().start()
         _STARTED.add(self)
 
@@ -55,7 +59,7 @@ def processes(count: int, begin: Callable[..., None] | None = None, *given: Any)
     """``count`` new processes with one thread for linear algebra each; every one starts with ``begin(*given)``.
 
     Only the parent receives Ctrl-C. If the parent leaves the block by an exception, workers are terminated, even during
-    a simulation. If the parent is killed, they end themselves.
+    a simulation. If the parent is killed, they end themselves. Their temporary files are removed after them.
 
     Raises
     ------
@@ -69,7 +73,9 @@ def processes(count: int, begin: Callable[..., None] | None = None, *given: Any)
         os._exit(UNGUARDED)
     before = set(active_children())
     _start_tracker()
-    pool = ProcessPoolExecutor(count, _Context(), _begin, (begin, given))
+    # An ended worker removes nothing itself. A file that is still open stays, as on Windows.
+    folder = tempfile.TemporaryDirectory(prefix="tyrefem-", ignore_cleanup_errors=True)
+    pool = ProcessPoolExecutor(count, _Context(), _begin, (folder.name, begin, given))
     try:
         yield pool
         pool.shutdown()
@@ -86,6 +92,8 @@ def processes(count: int, begin: Callable[..., None] | None = None, *given: Any)
             raise RuntimeError(message) from None
         raise
     finally:
+        with interruption_delayed():
+            folder.cleanup()
         _STARTED.difference_update([each for each in _STARTED if each.exitcode is not None])
 
 
@@ -107,15 +115,17 @@ def _start_tracker() -> None:
         return
     sys.warnoptions.append(LEFT_BEHIND)
     try:
-        resource_tracker.ensure_running()
+        with _standard_modules():
+            resource_tracker.ensure_running()
     finally:
         sys.warnoptions.remove(LEFT_BEHIND)
 
 
-def _begin(begin: Callable[..., None] | None, given: tuple[Any, ...]) -> None:
+def _begin(folder: str, begin: Callable[..., None] | None, given: tuple[Any, ...]) -> None:
+    tempfile.tempdir = folder  # the parent removes it
     # Where a signal cannot be blocked, as on Windows, it is ignored.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    threading.Thread(target=_end_with_parent, daemon=True).start()
+    threading.Thread(target=_end_with_parent, args=(folder,), daemon=True).start()
     # As in the parent: imports make many objects and no garbage.
     gc.set_threshold(GARBAGE)
     # To dismantle a worker's memory object by object takes a quarter of a second.
@@ -135,11 +145,12 @@ def _leave() -> None:
     os._exit(0)
 
 
-def _end_with_parent() -> None:
-    """End a worker when its parent is killed, as the parent cannot end it then."""
+def _end_with_parent(folder: str) -> None:
+    """End a worker when its parent is killed, as the parent can neither end it then nor remove its temporary folder."""
     parent = parent_process()
     if parent is not None:
         parent.join()
+        shutil.rmtree(folder, ignore_errors=True)
         os._exit(1)
 
 
@@ -148,6 +159,23 @@ def end_children() -> None:
     for child in active_children():
         with suppress(OSError):
             child.terminate()
+
+
+@contextmanager
+def _standard_modules() -> Iterator[None]:
+    """Processes started here find no modules in the current folder before they have the parent's path.
+
+    Else a user's file there with the name of a standard module, such as ``signal.py``, would end them at their start.
+    """
+    before = os.environ.get(SAFE_PATH)
+    os.environ[SAFE_PATH] = "1"
+    try:
+        yield
+    finally:
+        if before is None:
+            os.environ.pop(SAFE_PATH, None)
+        else:
+            os.environ[SAFE_PATH] = before
 
 
 @contextmanager

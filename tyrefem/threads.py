@@ -7,9 +7,10 @@ the processor time; beside another busy process a press took 4.5 times as long w
 from __future__ import annotations
 
 import functools
+import math
 import os
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -23,6 +24,36 @@ def one_thread_by_default() -> None:
     """Give libraries that are loaded from now on one thread, unless the environment names a number."""
     if not any(name in os.environ for name in VARIABLES):
         os.environ.update(dict.fromkeys(VARIABLES, "1"))
+
+
+def usable_cores(root: str = "/") -> int:
+    """Processor cores that this process may use: of a shared machine, a queue or a container often gives it some only.
+
+    Parameters
+    ----------
+    root : folder that holds ``sys``.
+
+    >>> 1 <= usable_cores() <= (os.cpu_count() or 1)
+    True
+    """
+    most = [os.cpu_count() or 1, *_quotas(os.path.join(root, "sys/fs/cgroup"))]
+    if hasattr(os, "sched_getaffinity"):  # Linux
+        most.append(len(os.sched_getaffinity(0)))
+    return max(min(most), 1)
+
+
+def _quotas(group: str) -> Iterator[int]:
+    """Limits of a container's control group, rounded up: ``200000 100000`` are two cores, ``max`` or -1 no limit."""
+    for files in (("cpu.max",), ("cpu/cpu.cfs_quota_us", "cpu/cpu.cfs_period_us")):
+        with suppress(OSError, ValueError):
+            time, period = " ".join(_text(os.path.join(group, file)) for file in files).split()
+            if int(time) > 0 and int(period) > 0:
+                yield math.ceil(int(time) / int(period))
+
+
+def _text(file: str) -> str:
+    with open(file, encoding="ascii") as stream:
+        return stream.read()
 
 
 @contextmanager

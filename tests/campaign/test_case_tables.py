@@ -61,6 +61,8 @@ def test_semicolons_and_decimal_commas(tmp_path: Path, delimiter: str) -> None:
         ("name,section\n,b\n", "line 2: '' is no name"),
         ("name,section\na,b\nc,d\na,b\n", "case 'a' stands in lines 2 and 4"),
         ("name,section\na,b\nA,d\n", "cases 'a' and 'A', lines 2 and 3, differ only in capital letters"),
+        ("name,section\nAux,b\n", "line 2: 'Aux' can be no folder on Windows"),
+        ("name,section\na.,b\n", "line 2: 'a.' can be no folder on Windows"),
         ('name,section\na,"b\n', "line 2: quotes do not match"),
         (b"name\x00", "is not a text file"),
         (b"PK\x03\x04", "workbook or archive"),

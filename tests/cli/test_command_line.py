@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 from terminal import command, process
@@ -34,6 +35,15 @@ def test_help_names_every_command(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["--help"]) == 0
     out = capsys.readouterr().out
     assert [name for name in COMMANDS if f" {name} " in out] == list(COMMANDS)
+
+
+def test_capital_letters_make_no_command_where_files_do_not_tell_them(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    # As on Windows and macOS, where RUN.py is the file run.py.
+    monkeypatch.setattr(Path, "is_file", lambda _: True)
+    assert main(["RUN"]) == 2
+    assert "No such command 'RUN'" in capsys.readouterr().err
 
 
 def test_version() -> None:

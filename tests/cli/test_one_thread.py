@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 import psutil
 import pytest
@@ -12,11 +13,12 @@ import scipy.linalg  # noqa: F401 - loads libraries that count their threads
 from threadpoolctl import threadpool_info, threadpool_limits
 
 import tyrefem as tf
-from tyrefem.threads import VARIABLES, one_thread, one_thread_by_default
+from tyrefem.threads import VARIABLES, one_thread, one_thread_by_default, usable_cores
 
 #: A command, and then the numbers of threads of its libraries.
 COMMAND = """
 import sys
+from pathlib import Path
 from tyrefem.cli import main
 sys.argv = ["tyrefem", "check", "nasa-22x5.5-8pr"]
 try:
@@ -63,3 +65,16 @@ def test_a_command_has_as_many_threads_as_the_environment_says_else_one(given: d
         [sys.executable, "-c", COMMAND], capture_output=True, text=True, env=environment, timeout=120, check=True
     )
     assert told.stdout.splitlines()[-1] == given.get("OMP_NUM_THREADS", "1")
+
+
+def test_a_process_with_few_cores_uses_no_more(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(os, "cpu_count", lambda: 64)
+    monkeypatch.setattr(os, "sched_getaffinity", lambda _: set(range(16)), raising=False)
+    assert usable_cores(str(tmp_path)) == 16
+    group = tmp_path / "sys/fs/cgroup"
+    (group / "cpu").mkdir(parents=True)
+    for version_1, version_2, cores in ((-1, "max", 16), (150_000, "max", 2), (-1, "400000", 4), (10_000, "max", 1)):
+        (group / "cpu/cpu.cfs_quota_us").write_text(f"{version_1}\n")
+        (group / "cpu/cpu.cfs_period_us").write_text("100000\n")
+        (group / "cpu.max").write_text(f"{version_2} 100000\n")
+        assert usable_cores(str(tmp_path)) == cores

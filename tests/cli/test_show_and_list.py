@@ -150,3 +150,12 @@ def test_compare_refuses_a_table_of_other_sensors(here: Path, refused: Callable[
     (here / "mine.csv").write_text("time [s],crowm-inner [degC]\n0,25\n10,26\n", encoding="utf-8")
     assert "did you mean 'crown-inner'?" in refused("compare", NASA, "mine.csv")
     assert "nowhere.csv" in refused("compare", NASA, "nowhere.csv")
+
+
+def test_a_narrow_terminal_cuts_no_number(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("COLUMNS", "40")
+    assert main(["show", "strain", "nasa-22x5.5-8pr", "--set", "mesh.size=12 mm"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert not any("…" in line for line in lines)
+    (whole,) = (line for line in lines if line.startswith("whole tyre"))
+    assert whole.split()[-1] == "100.0"

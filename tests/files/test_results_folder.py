@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 import signal
@@ -13,7 +14,7 @@ from typing import Any
 import pytest
 from filelock import FileLock
 
-from tyrefem.errors import InputError
+from tyrefem.errors import InputError, ResultWarning
 from tyrefem.output import atomic_folder, atomic_path, note_input, reading, write_json
 from tyrefem.output.folder import results_folder
 
@@ -189,6 +190,20 @@ def test_finished_work_stays_for_another_try(tmp_path: Path) -> None:
     assert (tmp_path / "cases" / "a.json").is_file()
 
 
+@pytest.mark.parametrize("force", [False, True])
+def test_a_case_in_other_capital_letters_keeps_its_files(force: bool, tmp_path: Path) -> None:
+    def case(name: str) -> None:
+        with results_folder(tmp_path, "run", [f"cases/{name}/*.csv"], origin=None, force=force) as place:
+            write(place, f"cases/{name}/readings.csv")
+
+    case("A")
+    # As on Windows and macOS, where both names are one folder.
+    (tmp_path / "cases" / "a").symlink_to("A")
+    case("a")
+    assert summary(tmp_path)["files"] == ["cases/a/readings.csv"]
+    assert (tmp_path / "cases" / "a" / "readings.csv").read_text(encoding="utf-8") == "cases/a/readings.csv"
+
+
 def test_two_commands_at_once_are_one_too_many(tmp_path: Path) -> None:
     with (
         results_folder(tmp_path, "run", NAMES, origin=None),
@@ -197,6 +212,30 @@ def test_two_commands_at_once_are_one_too_many(tmp_path: Path) -> None:
         run(tmp_path, "readings.csv")
     run(tmp_path, "readings.csv")
     assert files(tmp_path) == {"summary.json", "readings.csv"}
+
+
+@pytest.mark.skipif(os.name != "posix", reason="Windows locks in another way")
+def test_a_file_system_without_locks_holds_results(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def flock(*_: object) -> None:
+        raise OSError(errno.ENOLCK, "No locks available")
+
+    monkeypatch.setattr("fcntl.flock", flock)
+    with pytest.warns(ResultWarning, match="its file system has no locks"):
+        run(tmp_path / "out", "readings.csv")
+    assert files(tmp_path / "out") == {"summary.json", "readings.csv"}
+
+
+def test_a_lock_of_another_user_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def acquire(lock: FileLock, timeout: float) -> None:
+        raise PermissionError(errno.EACCES, "Permission denied", lock.lock_file)
+
+    monkeypatch.setattr(FileLock, "acquire", acquire)
+    with pytest.raises(InputError) as error:
+        run(tmp_path, "readings.csv")
+    assert error.value.file == tmp_path
+    (tmp_path / ".tyrefem-lock").touch()
+    with pytest.raises(InputError, match=r"\.tyrefem-lock: --out: cannot be written: Permission denied"):
+        run(tmp_path, "readings.csv")
 
 
 def test_ctrl_c_while_the_folder_is_locked_leaves_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -234,6 +273,13 @@ def test_what_is_no_folder_is_refused(tmp_path: Path, make: object, message: str
         with pytest.raises(InputError, match=message):
             run(folder, "readings.csv")
     assert os.path.lexists(place)
+
+
+def test_a_drive_that_is_not_there_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    # On Windows the folder above Q:\\ is Q:\\ itself, whether or not there is such a drive.
+    monkeypatch.setattr(os.path, "lexists", lambda _: False)
+    with pytest.raises(InputError, match="there is no such drive"):
+        run(tmp_path / "out", "readings.csv")
 
 
 def test_this_folder_is_a_folder_too(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

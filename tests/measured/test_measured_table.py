@@ -60,6 +60,12 @@ def test_every_dialect_says_the_same(tmp_path, dialect):
     assert_reference(run)
 
 
+def test_dashes_of_windows_in_one_byte_are_dashes(tmp_path):
+    text = DIALECTS["continental"].replace("crown", "crown \N{EN DASH} inner")
+    (run,) = read_table(table(tmp_path, text.encode("cp1252")))
+    assert run.sensors == ("crown \N{EN DASH} inner", "shoulder")
+
+
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "latin-1", "utf-16"])
 def test_encodings(tmp_path, encoding):
     text = "# Prüfstand\n" + DIALECTS["continental"]

@@ -188,3 +188,11 @@ def test_a_compiler_that_fails_is_said(exported, tmp_path):
     assert not (tmp_path / "no.fmu").exists()
     with pytest.raises(InputError, match="is not a real-time model"):
         write_fmu(__file__, tmp_path / "no.fmu")
+
+
+def test_a_compiler_may_write_in_any_encoding(exported, tmp_path):
+    compiler = tmp_path / "cc.sh"
+    compiler.write_bytes(b"#!/bin/sh\nprintf 'nicht unterst\\374tzt' >&2\nexit 1\n")
+    compiler.chmod(0o755)
+    with pytest.raises(InputError, match=r"failed: nicht unterst.tzt"):
+        write_fmu(exported.file, tmp_path / "no.fmu", compiler=str(compiler))

@@ -82,6 +82,16 @@ def test_settings_have_a_folder_of_any_name(here: Path) -> None:
         assert rules[0]["schema"]["path"] == f"{folder}/study.json"
 
 
+def test_settings_reach_schemas_on_another_drive(here: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def relpath(*_: object) -> str:
+        raise ValueError("path is on mount 'D:', start on mount 'C:'")
+
+    monkeypatch.setattr("os.path.relpath", relpath)
+    assert main(["schema", "--out", "drive"]) == 0
+    rules = tomllib.loads((here / SETTINGS).read_text(encoding="utf-8"))["rule"]
+    assert (here / "drive" / "study.json").as_posix() in [rule["schema"]["path"] for rule in rules]
+
+
 def test_settings_of_the_user_are_kept(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (here / SETTINGS).write_text("[formatting]\n", encoding="utf-8")
     assert main(["schema", "--out", "of/tyres"]) == 0

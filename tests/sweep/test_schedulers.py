@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 import pytest
-from worker_tasks import added, always_dies, dies_the_first_time, squared
+from worker_tasks import added, always_dies, dies_the_first_time, kept_file, squared
 
 from tyrefem import study
 from tyrefem.errors import InputError
+from tyrefem.processes import processes
 from tyrefem.sweep.sweep import sweep
 from tyrefem.variants.dask_cluster import Dask, outcome_of
 from tyrefem.variants.execution import SweepSettings
@@ -44,6 +46,17 @@ def test_processes_are_kept_from_one_call_to_the_next_and_replaced_when_one_dies
         assert outcomes == [(0, {"answers": {"x": 3.0}})]
         third = dict(scheduler.outcomes(added, [1], [0.0]))
         assert third[0]["answers"]["process"] != first[0]["answers"]["process"]
+
+
+@pytest.mark.parametrize("interrupted", [False, True])
+def test_processes_leave_no_temporary_files(interrupted: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    with suppress(KeyboardInterrupt), processes(2) as pool:
+        files = list(map(Path, pool.map(kept_file, range(4))))
+        assert all(file.is_file() and file.is_relative_to(tmp_path) for file in files)
+        if interrupted:
+            raise KeyboardInterrupt
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_process_that_is_killed_costs_nothing(tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import shutil
 from pathlib import Path
 
@@ -13,7 +14,7 @@ from hypothesis import strategies as st
 from tyrefem import study
 from tyrefem.api import Study
 from tyrefem.cards import read_toml
-from tyrefem.errors import InputError
+from tyrefem.errors import InputError, OutputError
 from tyrefem.geometry.meshing import build, write
 from tyrefem.library import find
 from tyrefem.quantity import parse
@@ -121,6 +122,19 @@ def test_two_variants_of_a_list_that_are_the_same_are_refused(tyre: Study, tmp_p
     (tmp_path / "list.csv").write_text("name,drive.speed [mph]\none,10\ntwo,10\n")
     with pytest.raises(InputError, match=r"'one' and 'two' are the same"):
         planned(tyre, SweepCard.check({"study": "x", "sample": "list", "cases": "list.csv"}), tmp_path)
+
+
+def test_a_full_disk_is_no_failure_of_a_variant(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    card = tmp_path / "own.toml"
+    shutil.copy(find("section", "nasa-22x5.5-8pr"), card)
+    plan = plan_of(study("nasa-22x5.5-8pr", {"section": str(card)}), {"drive.speed": ["10 mph", "20 mph"]})
+
+    def full(*_: object) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(Path, "write_bytes", full)
+    with pytest.raises(OutputError, match="temporary files cannot be written: No space left on device"):
+        perform(plan.task(0))
 
 
 def test_variants_that_bend_alike_share_mesh_and_strain_cycle() -> None:

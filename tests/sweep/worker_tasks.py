@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import tempfile
 from pathlib import Path
 from typing import Any
 
@@ -30,3 +31,8 @@ def always_dies(task: int) -> dict[str, Any]:
 
 def added(task: int, common: list[float]) -> dict[str, Any]:
     return {"answers": {"x": task + common[0], "process": os.getpid()}}
+
+
+def kept_file(task: int) -> str:
+    """A temporary file that the worker does not remove."""
+    return tempfile.mkstemp(suffix=str(task))[1]

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from tyrefem.cli.ctrl_c import INTERRUPTED, CtrlC, interruption_in, interruption_message
 from tyrefem.cli.line import fail
+from tyrefem.cli.streams import make_streams_usable
 from tyrefem.threads import one_thread_by_default
 
 if TYPE_CHECKING:
@@ -35,6 +36,7 @@ def main(arguments: list[str] | None = None) -> int:
     gc.set_threshold(100_000)
     if arguments is None:
         one_thread_by_default()
+        make_streams_usable()
     with CtrlC(leaves=arguments is None) as ctrl_c:
         message, code = _run(arguments, ctrl_c)
         if message:

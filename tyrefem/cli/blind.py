@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 from typing import Annotated
 
@@ -21,6 +20,7 @@ from tyrefem.cli.progress import progress
 from tyrefem.cli.shell import answer_with, say
 from tyrefem.output import SUMMARY, write_json
 from tyrefem.output.folder import results_folder
+from tyrefem.threads import usable_cores
 
 
 def _data_model(name: str) -> str:
@@ -64,7 +64,7 @@ def blind(
         results_folder(place, "blind", FILES, origin=origin, force=force, keeps=keeps) as folder,
         progress(f"{loaded.name}: {cases} cases", 1.0) as step,
     ):
-        cores, tick = workers or os.cpu_count() or 1, lambda done: step(done / cases)
+        cores, tick = workers or usable_cores(), lambda done: step(done / cases)
         result = run_blind(loaded, cases, seed, folder, cores, tick, reduced=reduced, truth=data_model)
         write_json(origin.using(list(result.plugins)).summary(), folder / SUMMARY)
         save(result, folder)

@@ -82,10 +82,13 @@ def _empty() -> typer.Typer:
     return made
 
 
+def _module_names() -> list[str]:
+    return [entry.name for entry in pkgutil.iter_modules([str(Path(__file__).parent)])]
+
+
 def _modules() -> list[ModuleType]:
     """Every module of the package that has a ``register``; ``ORDER`` is its place in the help."""
-    names = [entry.name for entry in pkgutil.iter_modules([str(Path(__file__).parent)]) if entry.name != "commands"]
-    modules = [importlib.import_module(f"{__package__}.{name}") for name in names]
+    modules = [importlib.import_module(f"{__package__}.{name}") for name in _module_names() if name != "commands"]
     return sorted((module for module in modules if hasattr(module, "register")), key=lambda module: module.ORDER)
 
 
@@ -141,7 +144,8 @@ def _described(command: Callable[..., Any] | None) -> Callable[[], None]:
 def _single(name: str) -> Any | None:
     """The application with the command of that name alone, from the module of that name; None: no such module."""
     module = name.replace("-", "_")
-    if not module.isidentifier() or not (Path(__file__).parent / f"{module}.py").is_file():
+    # Not by the file of that name: where capital letters do not count, `RUN` would have one, and no module.
+    if module not in _module_names():
         return None
     loaded = importlib.import_module(f"{__package__}.{module}")
     if not hasattr(loaded, "register"):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -26,6 +25,7 @@ from tyrefem.cli.progress import progress
 from tyrefem.cli.shell import answer_with, notify, say
 from tyrefem.interruption import keeping
 from tyrefem.output.folder import results_folder
+from tyrefem.threads import usable_cores
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
@@ -74,7 +74,7 @@ def compare(
         with (
             keeping(lambda: store.kept),
             progress(f"{loaded.name}: simulations", 1.0) as step,
-            _side_by_side(workers or (os.cpu_count() or 1 if inputs else 1)) as executor,
+            _side_by_side(workers or (usable_cores() if inputs else 1)) as executor,
         ):
             comparison = loaded.compare(
                 table,

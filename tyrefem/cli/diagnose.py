@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -27,6 +26,7 @@ from tyrefem.errors import InputError, nearest
 from tyrefem.interruption import keeping
 from tyrefem.output import SUMMARY, write_json
 from tyrefem.output.folder import results_folder
+from tyrefem.threads import usable_cores
 
 if TYPE_CHECKING:
     from tyrefem.api.diagnosis import Diagnosis
@@ -77,7 +77,7 @@ def diagnose(
 
         use_effects(effects)  # workers that start later know them, too
     # Workers import their modules while this process, which needs a core, imports its own and reads the study.
-    cores = os.cpu_count() or 1
+    cores = usable_cores()
     at_once = max(cores - 1, 1)
     with started_workers(workers or min(cores, MOST_WORKERS), at_once) as processes:
         from tyrefem.api import study as load

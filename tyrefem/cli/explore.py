@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from contextlib import nullcontext
 from pathlib import Path
 from typing import Annotated
@@ -22,6 +21,7 @@ from tyrefem.cli.progress import stages
 from tyrefem.cli.shell import answer_with, say
 from tyrefem.errors import InputError
 from tyrefem.output.file import results_file
+from tyrefem.threads import usable_cores
 
 
 def explore(
@@ -72,7 +72,7 @@ def explore(
     path = out or Path("results") / f"{chosen.name}-explore.html"
     allowed = None if tolerance is None else read_quantity("--tolerance", tolerance, "delta_degC", gt=0)
     keys = None if axes is None else _pair(axes)
-    count = workers or os.cpu_count() or 1
+    count = workers or usable_cores()
     origin = StudyOrigin.beside(chosen, path)
     with (
         results_file(path, (".html",), origin=origin, force=force),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -20,6 +19,7 @@ from tyrefem.cli.progress import stages
 from tyrefem.cli.shell import answer_with, notify, say
 from tyrefem.errors import InputError
 from tyrefem.output.file import results_file
+from tyrefem.threads import usable_cores
 
 if TYPE_CHECKING:
     from tyrefem.realtime.certificate import RealTimeCertificate
@@ -102,7 +102,7 @@ def export(
     lasting = None if duration is None else _read("--duration", duration, "s")
     if lasting is not None and not lasting >= 1:
         raise InputError(f"must be a second or more, not {duration}", field="--duration")
-    count = workers or os.cpu_count() or 1
+    count = workers or usable_cores()
     files = {"file": path} | ({"fmu": path.with_suffix(".fmu")} if fmu else {})
     origin = StudyOrigin.beside(chosen, path)
     with results_file(path, (".npz",), also=files.values(), origin=origin, force=force):

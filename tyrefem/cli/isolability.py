@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 from pathlib import Path
 from typing import Annotated
 
@@ -22,6 +21,7 @@ from tyrefem.cli.shell import answer_with, say
 from tyrefem.errors import InputError
 from tyrefem.interruption import keeping
 from tyrefem.output.folder import results_folder
+from tyrefem.threads import usable_cores
 
 #: Files that the command writes.
 FILES = ("isolability.csv", "isolability.json", "isolability.png", "calibration.json", "calibration.png")
@@ -66,7 +66,7 @@ def isolability(
     loaded = load(study, settings(changes), case)
     NEEDS.check(loaded)
     warn(loaded.warnings)
-    count = workers or min(os.cpu_count() or 1, 4)
+    count = workers or min(usable_cores(), 4)
     place = out or Path("results") / f"{loaded.name}-isolability"
     origin = StudyOrigin(loaded, simulated=True, random_seed=None if cases is None else seed)
     keeps = ["cases/*.json", f"{PROGRESS}/*/*.npz"]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 from typing import Annotated
 
@@ -25,6 +24,7 @@ from tyrefem.errors import InputError
 from tyrefem.interruption import keeping
 from tyrefem.output import SUMMARY, write_json
 from tyrefem.output.folder import results_folder
+from tyrefem.threads import usable_cores
 
 #: More processes gain little.
 MOST_WORKERS = 4
@@ -76,7 +76,7 @@ def plan(
             table = after is not None and not is_folder
             result = loaded.plan(
                 after,
-                workers=workers or min(os.cpu_count() or 1, MOST_WORKERS),
+                workers=workers or min(usable_cores(), MOST_WORKERS),
                 progress=tick,
                 store=store,
                 ignore=tuple(ignore or ()) if table else None,

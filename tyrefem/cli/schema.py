@@ -37,7 +37,7 @@ def schema(
         write_json({"versions": {"tyrefem": __version__}, "schemas": [*made]}, folder / "summary.json")
     names = ", ".join(name.removesuffix(".json") for name in made)
     say(f"{len(made)} schemas in {out}: {names}")
-    place, rules = Path(SETTINGS), settings(os.path.relpath(out))
+    place, rules = Path(SETTINGS), settings(_from_here(out))
     kept = os.path.lexists(place) and not force and not _written_here(place)
     if not kept:
         with atomic_path(place) as temporary:
@@ -49,6 +49,14 @@ def schema(
     else:
         say(f"{place} here: Taplo, and VS Code with the extension 'Even Better TOML', complete and check")
     say(f"a single file says its schema in its first line: {BEGINS}{out.as_posix()}/study.json")
+
+
+def _from_here(folder: Path) -> str:
+    """The path from the current folder, with ``/`` on every system; the whole path to another drive of Windows."""
+    try:
+        return Path(os.path.relpath(folder)).as_posix()
+    except ValueError:
+        return Path(os.path.abspath(folder)).as_posix()
 
 
 def _written_here(place: Path) -> bool:

@@ -20,6 +20,8 @@ import typer
 
 from tyrefem.cli.line import fail
 
+#: End of a cell that does not fit; largest width of a table, letters.
+CUT, WIDEST = "…", 1000
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print errors only.")]
 Json = Annotated[
     bool, typer.Option("--json", help="Print the answer as one JSON object on stdout; docs/commands.md has its keys.")
@@ -58,9 +60,17 @@ def say_table(table: Any) -> None:
 
         # A title or a name may have brackets or colons, which are no marks of rich.
         console = Console(highlight=False, markup=False, emoji=False)
-        with console.capture() as printed:
-            console.print(table)
-        _print(printed.get())
+        text = _drawn(console, table)
+        if CUT in text:  # a number would be lost: in a narrow terminal the lines go on below
+            console.width = WIDEST
+            text = _drawn(console, table)
+        _print(text)
+
+
+def _drawn(console: Any, table: Any) -> str:
+    with console.capture() as printed:
+        console.print(table)
+    return str(printed.get())
 
 
 def _print(text: str) -> None:

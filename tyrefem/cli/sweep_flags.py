@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tyrefem.errors import InputError, nearest
+from tyrefem.threads import usable_cores
 
 if TYPE_CHECKING:
     from tyrefem.sweep.design import DesignData, Questions
@@ -286,7 +287,7 @@ def _scheduler(address: str | None, workers: int | None) -> Iterator[Scheduler]:
         finally:
             cluster.close()
         return
-    count = workers or os.cpu_count() or 1
+    count = workers or usable_cores()
     if count == 1:
         yield Here()
         return

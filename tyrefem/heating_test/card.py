@@ -231,7 +231,7 @@ class RigCard(Card):
         self._patch()
         names = [layer.name for layer in self.layers]
         for number, name in enumerate(names):
-            check_file_name(name, "layer", f"layers.{number}.name")
+            check_file_name(name, "layer", f"layers.{number}.name", names[:number])
             if name in names[:number]:
                 raise InputError(f"two layers are named '{name}'", field=f"layers.{number}.name")
         for name, sensor in self.sensors.items():
@@ -240,7 +240,7 @@ class RigCard(Card):
         if low > high:
             raise InputError("the first power must not be larger than the second", field="laser.power_range")
         for name, run in self.runs.items():
-            check_file_name(name, "run", "runs")
+            check_file_name(name, "run", "runs", self.runs)
             if not low <= run.power <= high:
                 words = f"{run.power:g} W is outside the laser's range, {low:g} to {high:g} W (laser.power_range)"
                 raise InputError(words, field=f"runs.{name}.power")

@@ -11,6 +11,7 @@ from typing import Any
 from tyrefem.errors import InputError
 from tyrefem.measured.heading import is_time, parts
 from tyrefem.measured.lines import DELIMITERS, LONGEST_PREAMBLE, decode, texts
+from tyrefem.output.device_names import is_device
 
 _HEADING = re.compile(r"^\s*([^\[\]]+?)\s*(?:\[([^\[\]]*)\])?\s*$")
 _DECIMAL_COMMA = re.compile(r"^(\s*[-+]?\d+),(\d+(?:[eE][-+]?\d+)?\s*)$")
@@ -129,5 +130,7 @@ def _case(number: int, cells: list[str], columns: list[tuple[str, str]], path: P
     if not re.fullmatch(r"\w[\w.+-]{0,99}", name):
         allowed = "allowed: a letter or digit, then letters, digits, . + - _, 100 at most"
         raise InputError(f"line {number}: '{name}' is no name; {allowed}", file=path)
+    if is_device(name) or name.endswith("."):
+        raise InputError(f"line {number}: '{name}' can be no folder on Windows; give the case another name", file=path)
     changes = {key: f"{cell} {unit}".strip() for key, (cell, unit) in values.items() if key not in LABELS and cell}
     return Case(name, values.get("note", ("", ""))[0], changes, number)

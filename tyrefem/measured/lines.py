@@ -60,7 +60,7 @@ def decode(path: Path) -> str:
 def texts(path: Path) -> dict[str, str]:
     """The texts of a file by sheet of a workbook; any other file has one, "".
 
-    UTF-8 with or without mark, UTF-16 with mark, else Latin-1. Letters and marks are composed.
+    UTF-8 with or without mark, UTF-16 with mark, else Windows-1252 or Latin-1. Letters and marks are composed.
 
     Raises
     ------
@@ -85,7 +85,7 @@ def texts(path: Path) -> dict[str, str]:
         marked = data.startswith((b"\xff\xfe", b"\xfe\xff"))
         text = data.decode("utf-16" if marked else "utf-8-sig")
     except UnicodeDecodeError:
-        text = data.removeprefix(codecs.BOM_UTF8).decode("latin-1")
+        text = _in_one_byte(data.removeprefix(codecs.BOM_UTF8))
     binary = _CONTROL.search(text)
     if binary:
         line = text.count("\n", 0, binary.start()) + 1
@@ -95,6 +95,14 @@ def texts(path: Path) -> dict[str, str]:
     if not text.strip():
         raise InputError("is empty", file=path)
     return {"": unicodedata.normalize("NFC", text)}
+
+
+def _in_one_byte(data: bytes) -> str:
+    """Text with one byte per letter: Latin-1, or Windows' code page 1252, which has dashes and quotes beside it."""
+    try:
+        return data.decode("cp1252")
+    except UnicodeDecodeError:
+        return data.decode("latin-1")
 
 
 def _beside(path: Path) -> str:

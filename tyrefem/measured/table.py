@@ -29,9 +29,9 @@ def read_table(
     ``crown [degC]``, ``[degF]`` or ``[K]``. Timestamps, and clock times as h:mm:ss, count from the first row of their
     run. Units may stand in a row of their own. Columns in a unit of pressure, speed, force, length or
     power are not sensors and are left out (`MeasuredRun.channels`).
-    Comma, semicolon or tab between columns; decimal comma or point; UTF-8, UTF-16 or Latin-1. Empty, ``NaN``, ``-``,
-    ``--``, ``-9999`` = no reading. ``#`` and ``//`` begin a comment. Of a workbook (xlsx, xlsm, xlsb, xls, ods) the
-    visible sheets with a time column are read; several are runs with the sheets' names.
+    Comma, semicolon or tab between columns; decimal comma or point; UTF-8, UTF-16, Windows-1252 or Latin-1. Empty,
+    ``NaN``, ``-``, ``--``, ``-9999`` = no reading. ``#`` and ``//`` begin a comment. Of a workbook (xlsx, xlsm, xlsb,
+    xls, ods) the visible sheets with a time column are read; several are runs with the sheets' names.
 
     Parameters
     ----------

@@ -175,11 +175,13 @@ def place_of_output(path: str | Path) -> Path:
 
     Raises
     ------
-    InputError : the path, or a folder above it, is a file or a broken link.
+    InputError : the path, or a folder above it, is a file or a broken link; Windows has no such drive.
     """
     whole = Path(os.path.abspath(path))
     place = whole
     while not os.path.lexists(place):
+        if place.parent == place:
+            raise InputError("there is no such drive", file=place, field="--out")
         place = place.parent
     if not place.exists():
         raise InputError("is a link to nothing: mend or remove it", file=place, field="--out")

@@ -8,16 +8,18 @@ While a command writes, ``complete`` is false.
 
 from __future__ import annotations
 
+import errno
 import hashlib
 import json
 import os
-from collections.abc import Iterable, Iterator, Sequence
+import warnings
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any
 
-from tyrefem.errors import InputError
+from tyrefem.errors import InputError, ResultWarning
 from tyrefem.interruption import interruption_delayed
 from tyrefem.output import (
     SUMMARY,
@@ -39,6 +41,8 @@ from tyrefem.output.origin import ResultsOrigin
 COMMAND, COMPLETE, FILES, CHECKSUMS, WRITING = "command", "complete", "files", "checksums", "writing"
 ARGUMENTS, FILES_READ, VERSIONS = "arguments", "files_read", "versions"
 BOOKKEEPING = (COMMAND, ARGUMENTS, FILES_READ, COMPLETE, FILES, CHECKSUMS, WRITING)
+#: Errors of a file system that has no locks.
+NO_LOCKS = (errno.ENOLCK, errno.ENOTSUP, errno.EOPNOTSUPP, errno.ENOSYS)
 #: Largest number of foreign files in an error.
 NAMED = 5
 
@@ -113,30 +117,55 @@ def results_folder(
 
 @contextmanager
 def _locked(folder: Path) -> Iterator[None]:
-    """Lock the folder for this process until the process ends, even by a crash."""
+    """Lock the folder for this process until the process ends, even by a crash.
+
+    Some network file systems have no locks: there results are written without one.
+    """
     from filelock import FileLock, Timeout  # imports asyncio
 
-    lock = FileLock(folder / f"{TEMPORARY}lock")
+    lock, unlocked = FileLock(folder / f"{TEMPORARY}lock"), False
     try:
         try:
             folder.mkdir(parents=True, exist_ok=True)
             with interruption_delayed():
                 lock.acquire(timeout=0)
-        except Timeout:
-            raise InputError(
-                "another command is writing into this folder; wait for it, or choose another folder",
-                file=folder,
-                field="--out",
-            ) from None
-        except OSError as error:
-            raise InputError(f"cannot be written: {error.strerror or error}", file=folder, field="--out") from None
+        except (OSError, NotImplementedError) as error:
+            unlocked = _without_locks(lock.lock_file)
+            if not unlocked and isinstance(error, Timeout):
+                raise InputError(
+                    "another command is writing into this folder; wait for it, or choose another folder",
+                    file=folder,
+                    field="--out",
+                ) from None
+            if not unlocked:
+                # The lock of another user's command that was killed is still there.
+                place = Path(lock.lock_file) if os.path.lexists(lock.lock_file) else folder
+                reason = getattr(error, "strerror", None) or error
+                raise InputError(f"cannot be written: {reason}", file=place, field="--out") from None
+            message = f"{folder}: its file system has no locks; only one command at a time may write into this folder"
+            warnings.warn(message, ResultWarning, stacklevel=2)
         yield
     finally:
         with interruption_delayed():
-            if lock.is_locked:
+            if lock.is_locked or unlocked:
                 with suppress(OSError):
                     os.unlink(lock.lock_file)
+            if lock.is_locked:
                 lock.release()
+
+
+def _without_locks(file: str) -> bool:
+    """Whether the file system has no locks. Some versions of filelock take that for the lock of another command."""
+    try:
+        import fcntl
+    except ImportError:  # Windows
+        return False
+    try:
+        with open(file, "rb") as stream:
+            fcntl.flock(stream, fcntl.LOCK_SH | fcntl.LOCK_NB)
+    except OSError as error:
+        return error.errno in NO_LOCKS
+    return False
 
 
 class ResultsFolder(WriteGuard):
@@ -196,7 +225,7 @@ class ResultsFolder(WriteGuard):
                 file=self.folder,
                 field="--out",
             )
-        foreign = [name for name in present if name not in self._listed]
+        foreign = [name for name in present if not self._is_among(name, self._listed)]
         if foreign:
             listed = ", ".join(foreign[:NAMED]) + (", ..." if len(foreign) > NAMED else "")
             raise InputError(
@@ -221,8 +250,8 @@ class ResultsFolder(WriteGuard):
         name = self._name(path)
         if name is None:
             return
-        known = name == SUMMARY or name in self._listed or name in self._written or _matches(name, self._being_written)
-        if os.path.lexists(path) and not known and not self.force:
+        known = name == SUMMARY or name in self._written or _matches(name, self._being_written)
+        if os.path.lexists(path) and not (known or self.force or self._is_among(name, self._listed)):
             raise InputError(
                 f"was not written by 'tyrefem {self.command}', or has changed since; see --force", file=path
             )
@@ -263,7 +292,8 @@ class ResultsFolder(WriteGuard):
         kept = {str(name) for name in self._summary.get(FILES, [])}
         for name in sorted(set(self._listed) - set(self._written) - kept - {SUMMARY}):
             if not _matches(name, self._keeps):
-                self._remove(self.folder / name)
+                if not self._is_among(name, self._written):
+                    self._remove(self.folder / name)
                 del self._listed[name]
         self._write_summary(complete=bool(self._summary.get(COMPLETE, True)))
 
@@ -341,6 +371,15 @@ class ResultsFolder(WriteGuard):
         with suppress(ValueError):
             return Path(os.path.abspath(path)).relative_to(self.folder).as_posix()
         return None
+
+    def _is_among(self, name: str, others: Collection[str]) -> bool:
+        """Whether a file is one of these, perhaps in other capital letters: on Windows and macOS that is one file."""
+        if name in others:
+            return True
+        alike = [other for other in others if other.casefold() == name.casefold()]
+        with suppress(OSError):
+            return any(os.path.samefile(self.folder / name, self.folder / other) for other in alike)
+        return False
 
     def _is_input(self, path: Path) -> bool:
         with suppress(OSError):

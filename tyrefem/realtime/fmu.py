@@ -271,7 +271,8 @@ def _compiled(compiler: str, folder: Path) -> None:
     command = [compiler, "-std=c99", "-O3", "-shared", "-fPIC", "-fvisibility=hidden", "-o"]
     command += [str(place / f"{IDENTIFIER}{suffix}"), str(folder / "sources" / "tyre.c"), "-lm"]
     try:
-        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        # A compiler's messages may be in any encoding.
+        done = subprocess.run(command, capture_output=True, text=True, errors="replace", check=False)
     except OSError as error:
         raise InputError(f"'{compiler}' cannot be run: {error.strerror or error}") from None
     if done.returncode:

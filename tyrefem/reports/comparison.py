@@ -15,6 +15,7 @@ from tyrefem.compare.history import ALL
 from tyrefem.compare.stored import CURVES, RECORD, RESIDUALS, TABLE, curves_table
 from tyrefem.output import atomic_folder
 from tyrefem.reports.figures.phases import Phase, draw_phases, make_room
+from tyrefem.reports.figures.style import without_latex
 from tyrefem.reports.template import embedded, rendered
 from tyrefem.reports.words import history_files
 
@@ -54,6 +55,7 @@ def histories(comparison: ComparisonData, run: str) -> Figure:
     # Margins in inches are computed here: a layout engine takes longer than the drawing.
     width, height = max(3.6 * columns, 5.0) + 0.6, 2.5 * rows + 1.2
     edges = {"left": 0.65 / width, "right": 1 - 0.1 / width, "bottom": 0.8 / height, "top": 1 - 0.65 / height}
+    without_latex()
     figure = Figure(figsize=(width, height))
     grid = figure.subplots(
         rows, columns, sharex=True, sharey=True, squeeze=False, gridspec_kw={**edges, "hspace": 0.2, "wspace": 0.04}
@@ -127,6 +129,7 @@ def deviations(comparison: ComparisonData) -> Figure:
     columns = list(table[["run", "phase"]].drop_duplicates().itertuples(index=False, name=None))
     bias = np.full((len(sensors), len(columns)), np.nan)
     width, height = 0.85 * len(columns) + 3.0, 0.42 * len(sensors) + 2.0
+    without_latex()
     figure = Figure(figsize=(max(width, 7.0), height), layout="constrained")
     axes = figure.subplots()
     # Noise alone must not get strong colours: full colour is at least k u_val.

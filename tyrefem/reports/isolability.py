@@ -7,7 +7,7 @@ import io
 import numpy as np
 
 from tyrefem.diagnose.layout.isolability import MARGIN, Isolability
-from tyrefem.reports.figures.style import plain
+from tyrefem.reports.figures.style import plain, without_latex
 
 
 def picture(isolability: Isolability) -> bytes:
@@ -21,6 +21,7 @@ def picture(isolability: Isolability) -> bytes:
     values = isolability.separation[np.ix_(kept, kept)].copy()
     np.fill_diagonal(values, np.nan)
     size = 2.6 + 0.19 * len(names)
+    without_latex()
     figure = Figure(figsize=(size + 1.2, size), layout="constrained")
     FigureCanvasAgg(figure)
     axes = figure.subplots()

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tyrefem.output import atomic_folder, jsonable
-from tyrefem.reports.figures.style import plain
+from tyrefem.reports.figures.style import plain, without_latex
 
 if TYPE_CHECKING:
     from tyrefem.mechanics.footprint.natural_frequencies import NaturalFrequencies
@@ -44,6 +44,7 @@ def picture(result: NaturalFrequencies) -> bytes:
     nodes, corners = elements.nodes, elements.element_nodes[:, :4]
     drawn = sorted(result.modes, key=lambda natural: natural.mode.frequency)[:MOST]
     rows = -(-len(drawn) // COLUMNS)
+    without_latex()
     figure = Figure(figsize=(3 * COLUMNS, 2.3 * rows + 0.6), layout="constrained")
     FigureCanvasAgg(figure)
     grid = figure.subplots(rows, COLUMNS, squeeze=False).ravel()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -24,8 +25,12 @@ def screenshot(source: str | Path, png: str | Path, *, timeout: float = PATIENCE
     source, png = Path(source), Path(png)
     with atomic_path(png.with_suffix(".tmp.png")) as temporary:
         command = [sys.executable, "-m", "tyrefem.reports.view3d", str(source.resolve()), str(temporary.resolve())]
+        # The modules of this process: none from the current folder, where a user's file may have the name of one.
+        environment = {**os.environ, "PYTHONSAFEPATH": "1", "PYTHONPATH": os.pathsep.join(sys.path)}
         try:
-            done = subprocess.run(command, capture_output=True, text=True, timeout=timeout, check=False)
+            done = subprocess.run(
+                command, capture_output=True, text=True, errors="replace", timeout=timeout, check=False, env=environment
+            )
             failed = done.returncode != 0 and f"the renderer ended with code {done.returncode}{_last_line(done.stderr)}"
         except subprocess.TimeoutExpired:
             failed = f"the renderer took longer than {timeout:g} s"

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
 from tyrefem.boundaries.friction_tables import IceRow, WoodRow, ice_distance
+from tyrefem.output.device_names import is_device
 
 if TYPE_CHECKING:
     from tyrefem.mechanics.footprint.strain_harmonics import LinearisationError
@@ -42,11 +43,12 @@ LONGEST_NAME = 200
 def file_stem(name: object, instead: str) -> str:
     """A name for a file: letters, digits, ``_``, ``.`` and ``-`` of it stay; ``instead`` where nothing is left.
 
-    >>> file_stem("taxi/1", "run"), file_stem("...", "run")
-    ('taxi-1', 'run')
+    >>> file_stem("taxi/1", "run"), file_stem("...", "run"), file_stem("aux", "run")
+    ('taxi-1', 'run', 'run-aux')
     """
     plain = re.sub(r"[^\w.-]+", "-", str(name)).strip("-.")
-    return plain.encode()[:LONGEST_NAME].decode(errors="ignore") or instead
+    plain = plain.encode()[:LONGEST_NAME].decode(errors="ignore").rstrip("-.")
+    return f"{instead}-{plain}" if is_device(plain) else plain or instead
 
 
 def unlike(stem: str, taken: set[str]) -> str:

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 import tyrefem
 from tyrefem import library
 from tyrefem.cache import Cache
-from tyrefem.errors import InputError
+from tyrefem.errors import InputError, OutputError
 from tyrefem.inputs.study import StudyData
 from tyrefem.plugins import Sent, receive, registry, sent
 from tyrefem.sizes import completed_materials
@@ -184,9 +184,18 @@ def unpacked(packed: Bundle) -> StudyData:
     Raises
     ------
     VersionError : the study was packed by another version of the package.
+    OutputError : its files cannot be written, as on a full disk.
     """
     packed.check_versions()
-    return _studies.get(packed.digest, lambda: packed.unpacked(_folder(packed.digest)))
+    return _studies.get(packed.digest, lambda: _written(packed))
+
+
+def _written(packed: Bundle) -> StudyData:
+    try:
+        return packed.unpacked(_folder(packed.digest))
+    except OSError as error:
+        reason = f"temporary files cannot be written: {error.strerror or error}"
+        raise OutputError(reason, file=tempfile.gettempdir()) from None
 
 
 _folder_lock = threading.Lock()
@@ -254,9 +263,9 @@ def perform(task: Task) -> Outcome:
     Raises
     ------
     VersionError : the study was packed by another version of the package.
+    OutputError : a file cannot be written: no fault of the variant.
     """
     from tyrefem.conduction import SolverError
-    from tyrefem.errors import InputError
     from tyrefem.simulation.run import run
     from tyrefem.variants.answers import answers
 
@@ -269,6 +278,8 @@ def perform(task: Task) -> Outcome:
         outcome = Answered(answers(result, task.time_to))
         recent_tyres.remember(result.tyre)
         return outcome
+    except OutputError:
+        raise
     except InputError as error:
         return Failed(str(task.packed.named(error)))
     except SolverError as error:

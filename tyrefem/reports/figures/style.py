@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from tyrefem.output import command_arguments
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
@@ -43,9 +45,18 @@ def figure(width: float, height: float) -> Figure:
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
+    without_latex()
     made = Figure(figsize=(width, height), dpi=DPI, facecolor="white")
     FigureCanvasAgg(made)
     return made
+
+
+def without_latex() -> None:
+    """For a command, switch off that matplotlib's settings of the user ask for LaTeX: names of regions are none."""
+    from matplotlib import rcParams
+
+    if command_arguments():
+        rcParams["text.usetex"] = False
 
 
 def add_axes(drawn: Figure, left: float, bottom: float, width: float, height: float) -> Axes:
