@@ -348,6 +348,9 @@ class StudyCard(Card):
         for name in self.sensors:
             if name in OUTPUTS or not name.strip():
                 raise InputError(f"'{name}' is a name that readings already use", field="sensors")
+            if name != name.strip() or len(name.splitlines()) != 1:
+                words = f"{name!r} is no name of a column: it begins or ends with a space, or has a line break"
+                raise InputError(words, field="sensors")
         return self
 
     @model_validator(mode="after")
