@@ -124,5 +124,5 @@ def test_a_place_in_another_world_is_out_of_range():
 @pytest.mark.parametrize("name", [" crown-inner", "hottest ", "two\nlines"])
 def test_a_name_that_no_table_gives_back_is_refused(name):
     """`readings.csv` had two columns of one sensor, or a heading of two lines: no command read it again."""
-    with pytest.raises(InputError, match="sensors: .* is no name of a column"):
+    with pytest.raises(InputError, match=r"sensors: .* is no name of a column"):
         tf.study("nasa-22x5.5-8pr", {"sensors": {name: {"s": "0.30 in", "depth": "0.12 in"}}})
