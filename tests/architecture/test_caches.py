@@ -36,6 +36,7 @@ ALLOWED = {
     "compare/packed_drive.py: _TYRES = {}": "the drives of a comparison, taken out when it ends",
     "cards/__init__.py: cache(_plausible)": "one value for every class of card",
     "cards/__init__.py: cache(_allowed)": "one value for every class of card",
+    "cards/__init__.py: cache(_plain_numbers)": "one value for every class of card",
     "cards/__init__.py: cache(_units)": "one value for every class of card",
     "effects/effect.py: cache(parameters)": "one value for every class of effect",
     "effects/effect.py: cache(overrides)": "one value for every class of effect and port",

@@ -10,6 +10,7 @@ from tyrefem import library, study
 from tyrefem.cards import merged, read_toml
 from tyrefem.errors import InputError
 from tyrefem.materials.card import MaterialCard, material
+from tyrefem.variants.card import VaryCard
 
 pytestmark = pytest.mark.fast
 
@@ -137,3 +138,49 @@ def test_a_file_that_the_parser_gives_up_is_an_error_of_the_file(tmp_path, value
 def test_a_raised_digit_is_no_number_of_an_entry():
     with pytest.raises(InputError, match="layers: no entry '²'; allowed: liner"):
         merged({"layers": [{"name": "liner"}]}, {"layers": {"²": {"name": "ply"}}})
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"mesh.through": True}, r"mesh\.through: must be a number, not True$"),
+        ({"plan.drives": False}, r"plan\.drives: must be a number, not False$"),
+        ({"materials.tread.elasticity": "yeoh"}, r"materials\.tread\.elasticity: must be a table of keys, not 'yeoh'$"),
+    ],
+)
+def test_a_value_of_another_kind(change: dict[str, object], message: str) -> None:
+    """True was taken for 1, and a word for a table was refused in words of a library."""
+    with pytest.raises(InputError, match=message):
+        study("nasa-22x5.5-8pr", change)
+
+
+def test_true_is_no_number_of_a_sweep() -> None:
+    with pytest.raises(InputError, match=r"^factor\.0: must be a number, not True$"):
+        VaryCard.check({"factor": [True, 2]})
+    assert VaryCard.check({"values": [True, False]}).values == [True, False]
+
+
+@pytest.mark.parametrize(
+    ("change", "field"),
+    [
+        ({"materials.tread.density.value": "-1 kg/m**3"}, "materials.tread.density.value"),
+        ({"materials.tread.densty.value": "1 kg/m**3"}, "materials.tread"),
+        ({"section.crown_radius": "0 in"}, "section.parameters.crown_radius"),
+        ({"section.crown_radius": "1 in"}, "section.parameters.crown_radius"),
+    ],
+)
+def test_a_wrong_change_of_a_card_is_the_studys(change: dict[str, object], field: str) -> None:
+    """The message named the file of the card, in which the wrong value is not."""
+    known = study("nasa-22x5.5-8pr")
+    for changed in (lambda: study("nasa-22x5.5-8pr", change), lambda: known.replace(change)):
+        with pytest.raises(InputError) as caught:
+            changed()
+        assert (caught.value.file, caught.value.field) == (known.file, field)
+
+
+def test_a_wrong_card_with_changes_is_the_cards(tmp_path) -> None:
+    wrong = library.find("material", "nasa-tread").read_text().replace("0.5 cal/g/K", "0.5 cal/g")
+    (tmp_path / "soft.toml").write_text(wrong)
+    with pytest.raises(InputError) as caught:
+        study("nasa-22x5.5-8pr", {"materials.tread": {"base": str(tmp_path / "soft.toml"), "notes": "mine"}})
+    assert (caught.value.file, caught.value.field) == (tmp_path / "soft.toml", "specific_heat.value")

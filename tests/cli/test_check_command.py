@@ -163,3 +163,31 @@ def test_a_folder_of_every_kind_of_file_is_checked(here: Path, refused: Callable
     (here / "folder").mkdir()
     (here / "folder" / name).write_text("", encoding="utf-8")
     assert f"{name}: is empty" in refused("check", "folder")
+
+
+@pytest.mark.parametrize(
+    ("table", "words"),
+    [
+        (
+            '[explore]\nvary = { "drive.sped" = { from = "1 mph", to = "2 mph" } }',
+            "explore.drive: a variant with drive.sped",
+        ),
+        ('[explore]\nvary = { "drive.speed" = nan }', "explore.vary: must be a list of values or a tuple"),
+        ('[explore]\naxes = ["drive.speed", "drive.laod"]', "explore.axes: 'drive.laod' does not vary; did you mean"),
+        (
+            '[plan]\nlimits = { "drive.phases.x.speed" = ["1 mph", "2 mph"] }',
+            "plan.limits.drive.phases.x.speed: the drive",
+        ),
+        (
+            '[plan]\nsensors = { p = { s = "10 m", depth = "2 mm" } }',
+            "plan.sensors.p: s = 10000.0 mm is off the section",
+        ),
+    ],
+)
+def test_the_tables_of_later_commands_are_checked(
+    table: str, words: str, tmp_path: Path, refused: Callable[..., str]
+) -> None:
+    file = tmp_path / "study.toml"
+    study = (library.shipped() / "studies/nasa-22x5.5-8pr/study.toml").read_text(encoding="utf-8")
+    file.write_text(f"{study}\n{table}\n", encoding="utf-8")
+    assert f"study.toml: {words}" in refused("check", str(file))

@@ -73,7 +73,7 @@ def test_a_run_gives_temperatures_and_sensitivities(here: Path, capfd: pytest.Ca
         (["--temperature", "60 degC", "--plateau"], "--plateau: --temperature has no phases"),
         (
             ["--set", "materials.tread.fatigue.tearing_energy=-1 kJ/m**2"],
-            "nasa-tread.toml: fatigue.tearing_energy: '-1 kJ/m**2'",
+            "study.toml: materials.tread.fatigue.tearing_energy: '-1 kJ/m**2'",
         ),
     ],
 )

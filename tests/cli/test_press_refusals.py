@@ -16,7 +16,7 @@ LINEAR = ("--set", "mechanics.motion=linear")
 @pytest.mark.parametrize(
     ("study", "change", "words"),
     [
-        (RADIAL, f"{CORDS}.angle=95 deg", "passenger-belt.toml: cords.angle: 95 deg is out of range"),
+        (RADIAL, f"{CORDS}.angle=95 deg", "study.toml: materials.belt-1.cords.angle: 95 deg is out of range"),
         (RADIAL, f"{CORDS}.ends=2000 1/m", "cords.ends: 2000 cords per metre of 0.53 mm do not fit side by side"),
         (RADIAL, "materials.bead.cords.ends=90000 1/m", "cords.ends: "),
         (RADIAL, f"{CORDS}.compression_modulus=900 GPa", "must be at most the modulus in tension"),

@@ -89,7 +89,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     ("effect", "words"),
     [
         ({"name": "hot-raod"}, "unknown effect 'hot-raod'; did you mean 'hot-road'?"),
-        ({"warmer_by": "3 delta_degC"}, "unknown effect None"),
+        ({"warmer_by": "3 delta_degC"}, "missing; it names the effect"),
         ("hot-road", "must be a table with a name"),
         ({"name": "hot-road", "warmer": "3 delta_degC"}, "unknown key 'warmer'; did you mean 'warmer_by'?"),
         ({"name": "hot-road", "warmer_by": "3 degC"}, "write 'delta_degC'"),
@@ -282,3 +282,25 @@ def test_heat_that_ends_before_it_begins_is_refused(name: str) -> None:
     with pytest.raises(InputError, match="ends at 300 s, before it begins at 600 s"):
         catalogue()[name].check({**place, "begins": "600 s", "ends": "300 s"})
     assert catalogue()[name].check({**place, "begins": "300 s", "ends": "600 s"})
+
+
+@pytest.mark.parametrize(
+    ("sd", "message"),
+    [
+        ({"film_gian": 0.1}, r"sd: 'film_gian' is no number of this effect; did you mean 'film_gain'"),
+        ({"film_gain": -0.1}, r"sd\.film_gain: -0\.1 is out of range: must be at least 0"),
+        ({"film_gain": float("nan")}, r"sd\.film_gain: nan is not a finite number"),
+        ({"film_gain": "5 mm"}, r"sd\.film_gain: 'mm' is not a unit"),
+    ],
+)
+def test_a_wrong_standard_deviation_is_refused(sd: dict[str, Any], message: str) -> None:
+    """It was left out of a diagnosis unseen, or failed there."""
+    wet = {"name": "wet-road", "film_gain": 0.5}
+    assert tf.study("nasa-22x5.5-8pr", {"effects": [{**wet, "sd": {"film_gain": "10 %"}}]}).effects
+    with pytest.raises(InputError, match=message):
+        tf.study("nasa-22x5.5-8pr", {"effects": [{**wet, "sd": sd}]})
+
+
+def test_an_effect_without_a_name() -> None:
+    with pytest.raises(InputError, match=r"effects\.0\.name: missing; it names the effect; allowed: ambient-drift"):
+        tf.study("nasa-22x5.5-8pr", {"effects": [{"film_gain": 0.5}]})

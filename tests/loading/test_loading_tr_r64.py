@@ -12,6 +12,8 @@ from hypothesis import strategies as st
 from tyrefem.errors import InputError
 from tyrefem.geometry import load as section
 from tyrefem.inputs.loading import LoadCase, TrR64, VerticalStiffness, load_case
+from tyrefem.inputs.study import study
+from tyrefem.mechanics.solved_cases import check_cases
 
 pytestmark = pytest.mark.fast
 
@@ -107,3 +109,10 @@ def test_measured_stiffness():
 def test_an_impossible_deflection_is_refused(given):
     with pytest.raises(InputError, match=r"deflects the tyre by .* allowed: 0 to 140 mm"):
         load_case(LAW, TYRE, outer_radius=0.28, pressure=6e5, **given)
+
+
+def test_an_obstacle_is_no_drum() -> None:
+    """1.7 mm, written for 1.7 m, left no footprint, so no heat to the road: a tread of 467 degC after 20 s."""
+    with pytest.raises(InputError, match=r"drive\.drum_diameter: a drum of 1\.7 mm is too small: at least a tenth"):
+        check_cases(study("nasa-22x5.5-8pr", {"drive.drum_diameter": "1.7 mm"}))
+    check_cases(study("nasa-22x5.5-8pr", {"drive.drum_diameter": "0.1 m"}))

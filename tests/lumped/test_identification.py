@@ -236,3 +236,9 @@ def test_names_of_bodies_are_no_formulas(tmp_path: Path) -> None:
     data = BODY | {"bodies": {name: {"heat_share": 1.0}}, "films": [{"between": [name, "air"]}], "runs": [run]}
     write_files(identify(ThermalCard.check(data)), tmp_path / "out")
     assert (tmp_path / "out" / "thermal-card.png").is_file()
+
+
+def test_a_resistance_above_the_load_is_refused() -> None:
+    run = {**BODY["runs"][0], "load": "4800 N", "rolling_resistance": "38 kN"}
+    with pytest.raises(InputError, match=r"runs\.0\.rolling_resistance: 38000 N must be less than the load, 4800 N"):
+        ThermalCard.check({**BODY, "runs": [run]})

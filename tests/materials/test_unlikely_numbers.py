@@ -25,6 +25,7 @@ from tyrefem.cards.plausible import (
     Plausible,
 )
 from tyrefem.effects import Prior, catalogue
+from tyrefem.errors import InputError
 from tyrefem.materials.card import material
 from tyrefem.quantity import Unit, parse
 from tyrefem.rig import RigCard
@@ -160,3 +161,61 @@ def test_the_documentation_has_the_same_ranges() -> None:
         assert f"outside {likely.low:g} to {likely.high:g}" in text
     for likely, unit in ((SHEAR_MODULUS, 1e6), (CORD_MODULUS, 1e9)):
         assert f"{likely.low / unit:g} to {likely.high / unit:g}" in text
+
+
+STUDY_SLIPS: list[tuple[str, dict[str, Any]]] = [
+    ("materials.tread.loss_tangent.rate", {"materials.tread.loss_tangent.at": "1000 degC"}),
+    ("materials.tread.loss_tangent.rate", {"materials.tread.loss_tangent.rate": "0.148 1/delta_degC"}),
+    (
+        "materials.tread.softening.rate",
+        {"materials.tread.softening": {"rate": "0.1 1/delta_degC", "at": "500 degC", "source": "x"}},
+    ),
+    (
+        "materials.tread.softening.table.1",
+        {"materials.tread.softening": {"law": "table", "table": [["20 degC", 1], ["80 degC", 5e3]], "source": "x"}},
+    ),
+    ("drive.ambient", {"drive.ambient": "298 degC"}),
+    ("sensors.shoulder-inner.lag", {"sensors.shoulder-inner.lag": "2000 s"}),
+    ("sensors.shoulder-inner.position_sd", {"sensors.shoulder-inner.position_sd": "2 m"}),
+    ("boundaries.outside_air.per_speed", {"boundaries.outside_air.per_speed": "1.7 kW*s/m**3/K"}),
+    ("boundaries.contained_air.gas_constant", {"boundaries.contained_air.gas_constant": "8.3 J/kg/K"}),
+    ("boundaries.rim.contact_resistance", {"boundaries.rim.contact_resistance": "2 m**2*K/W"}),
+    ("boundaries.sliding.decomposition_temperature", {"boundaries.sliding.decomposition_temperature": "20 degC"}),
+    ("boundaries.sliding.pressure", {"boundaries.sliding.pressure": "300 Pa"}),
+    ("section.parameters.inner_volume", {"section.inner_volume": "13 m**3"}),
+    ("section.rating.load", {"section.rating.load": "4350 MN"}),
+    ("section.rating.pressure", {"section.rating.pressure": "156 MPa"}),
+    ("section.rating.bead_wire_area", {"section.rating.bead_wire_area": "0.06 m**2"}),
+    (
+        "mechanics.load_law.stiffness",
+        {"mechanics.load_law": {"law": "vertical-stiffness", "stiffness": "3 N/mm", "source": "x"}},
+    ),
+    ("mechanics.footprint.length", {"mechanics.footprint": {"law": "given", "length": "0.15 mm"}}),
+    ("mesh", {"mesh.unit": "mm"}),
+]
+
+
+@pytest.mark.parametrize(("field", "changes"), STUDY_SLIPS, ids=[field for field, _ in STUDY_SLIPS])
+def test_a_slip_in_a_study_is_warned_of(field: str, changes: dict[str, Any]) -> None:
+    """These passed unseen: a tread was computed at 1024 degC after 20 s of slow rolling."""
+    (warning,) = study("nasa-22x5.5-8pr", changes).warnings
+    assert warning.field == field
+
+
+def test_a_given_energy_that_tears_rubber() -> None:
+    energies = {"tread": "10 kJ/m**3", "sidewall": "3 kJ/m**3", "bead": "0 J/m**3"}
+    energy = {"load": "12 kN", "pressure": "83 psi", "source": "x", "regions": {**energies, "carcass": "12 GJ/m**3"}}
+    (warning,) = study("nasa-22x5.5-8pr", {"mechanics.energy": energy}).warnings
+    assert warning.field == "mechanics.energy.regions.carcass"
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"table": [["20 degC", 0.2], ["80 degC", 50]], "law": "table"}, r"table\.1: 50 is out of range"),
+        ({"table": [["20 degC", 0.2], ["8000 degC", 0.1]], "law": "table"}, r"table\.1: '8000 degC' is out of range"),
+    ],
+)
+def test_a_table_has_the_limits_of_a_number(changes: dict[str, Any], message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        material({"base": "nasa-tread", "loss_tangent": changes})

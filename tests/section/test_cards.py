@@ -246,3 +246,13 @@ def test_a_worn_sidewall_leaves_the_tread_beside_its_grooves(ring_card: dict[str
     s = np.linspace(0.0, 0.04, 41)
     assert section.worn("sidewall", 0.2).interfaces(s) == pytest.approx(section.interfaces(s), abs=1e-12)
     assert section.worn("tread", 0.2).interfaces(s)[-1] == pytest.approx(section.interfaces(s)[-1] - 1.2e-3, abs=1e-12)
+
+
+def test_a_table_that_begins_on_the_other_side_is_refused() -> None:
+    """A section is symmetric: rows at negative stations changed the thickness of the crown unseen."""
+    table = {
+        "unit": "in",
+        "values": [-1.0, *read_toml(names("section")["nasa-22x5.5-8pr"])["layers"][0]["s"]["values"][1:]],
+    }
+    with pytest.raises(InputError, match=r"layers\.0\.s: the table runs from -0\.0254 to 0\.1478 m"):
+        load({"base": "nasa-22x5.5-8pr", "layers": {"carcass": {"s": table}}})

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import tyrefem as tf
+from tyrefem.errors import InputError
 from tyrefem.simulation.sensors import lagged
 
 pytestmark = pytest.mark.fast
@@ -112,3 +113,16 @@ def test_lag_reaches_the_readings(study):
     behind = slow.readings["crown-inner"] - slow.readings["slow"]
     assert behind.iloc[0] == 0
     assert (behind.iloc[1:] > 0).all()
+
+
+def test_a_place_in_another_world_is_out_of_range():
+    """Its square is no number, of which numpy warned on the screen."""
+    with pytest.raises(InputError, match=r"sensors\.far\.at\.0: '1e300 m' is out of range: must be at most 20 m"):
+        tf.study("nasa-22x5.5-8pr", {"sensors.far": {"at": ["1e300 m", "0 m"]}})
+
+
+@pytest.mark.parametrize("name", [" crown-inner", "hottest ", "two\nlines"])
+def test_a_name_that_no_table_gives_back_is_refused(name):
+    """`readings.csv` had two columns of one sensor, or a heading of two lines: no command read it again."""
+    with pytest.raises(InputError, match=r"sensors: .* is no name of a column"):
+        tf.study("nasa-22x5.5-8pr", {"sensors": {name: {"s": "0.30 in", "depth": "0.12 in"}}})

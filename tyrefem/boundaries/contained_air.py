@@ -9,7 +9,8 @@ from typing import Annotated, ClassVar, Literal
 
 from tyrefem.boundaries import CAL, FILM, Law
 from tyrefem.cards import FilmCoefficient, Warmth
-from tyrefem.cards.plausible import AIR_FILM, GAS_HEAT
+from tyrefem.cards.plausible import AIR_FILM, GAS_DENSITY, GAS_HEAT
+from tyrefem.cards.plausible import GAS_CONSTANT as LIKELY_GAS_CONSTANT
 from tyrefem.errors import InputWarning
 from tyrefem.plugins import Range, Trial, trial
 from tyrefem.quantity import KELVIN, Unit
@@ -69,7 +70,7 @@ class Gas(ContainedAirLaw):
 
     law: Literal["gas"]
     specific_heat: Annotated[float, Unit("J/kg/K", gt=0), GAS_HEAT] = 718.0
-    gas_constant: Annotated[float, Unit("J/kg/K", gt=0)] = GAS_CONSTANT
+    gas_constant: Annotated[float, Unit("J/kg/K", gt=0), LIKELY_GAS_CONSTANT] = GAS_CONSTANT
 
     def heat_capacity(self, volume: float, pressure: float, temperature: float) -> float:
         """m c_v, J/K."""
@@ -81,7 +82,7 @@ class Report(ContainedAirLaw):
     """The report's air: 0.0013 g/cm3 and 0.24 cal/g/K at any inflation pressure (appendix I)."""
 
     law: Literal["report"]
-    density: Annotated[float, Unit("kg/m**3", gt=0)] = 1.3
+    density: Annotated[float, Unit("kg/m**3", gt=0), GAS_DENSITY] = 1.3
     specific_heat: Annotated[float, Unit("J/kg/K", gt=0), GAS_HEAT] = 0.24 * 4184.0
 
     def heat_capacity(self, volume: float, pressure: float, temperature: float) -> float:

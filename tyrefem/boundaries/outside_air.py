@@ -13,7 +13,7 @@ from pydantic import WithJsonSchema, model_validator
 
 from tyrefem.boundaries import CAL, FILM, SPEEDS, Law
 from tyrefem.cards import FilmCoefficient
-from tyrefem.cards.plausible import AIR_FILM
+from tyrefem.cards.plausible import AIR_FILM, FILM_PER_SPEED
 from tyrefem.errors import InputError, InputWarning
 from tyrefem.plugins import Trial, trial
 from tyrefem.quantity import Unit
@@ -40,7 +40,7 @@ class Nasa(OutsideAirLaw):
 
     law: Literal["nasa"]
     at_rest: Annotated[FilmCoefficient, AIR_FILM] = 1.3e-4 * CAL
-    per_speed: Annotated[float, Unit("W*s/m**3/K", ge=0)] = 4e-7 * CAL * 100
+    per_speed: Annotated[float, Unit("W*s/m**3/K", ge=0), FILM_PER_SPEED] = 4e-7 * CAL * 100
 
     def film(self, speed: float) -> float:
         """h, W/m2/K, at a speed in m/s."""

@@ -7,7 +7,7 @@ from typing import Annotated, ClassVar, Literal
 
 from tyrefem.boundaries import CAL, FILM, Law
 from tyrefem.cards import FilmCoefficient, Temperature
-from tyrefem.cards.plausible import CONTACT_FILM, SPECIFIC_HEAT, WHEEL_MASS
+from tyrefem.cards.plausible import CONTACT_FILM, CONTACT_RESISTANCE, SPECIFIC_HEAT, WHEEL_CONDUCTANCE, WHEEL_MASS
 from tyrefem.plugins import Range, Trial, trial
 from tyrefem.quantity import Unit
 
@@ -20,7 +20,7 @@ class RimLaw(Law):
 
     side: ClassVar[str] = "rim"
     film: Annotated[FilmCoefficient, CONTACT_FILM] = 0.5 * CAL
-    contact_resistance: Annotated[float, Unit("m**2*K/W", ge=0)] = 0.0
+    contact_resistance: Annotated[float, Unit("m**2*K/W", ge=0), CONTACT_RESISTANCE] = 0.0
     #: Rim temperature (initial, for a lumped rim) in phases whose `rim_temperature` is not given; by default `initial`.
     temperature: Temperature | None = None
 
@@ -50,9 +50,9 @@ class LumpedRim(RimLaw):
     mass: Annotated[float, Unit("kg", gt=0), WHEEL_MASS]
     specific_heat: Annotated[float, Unit("J/kg/K", gt=0), SPECIFIC_HEAT] = 0.23 * 4184.0
     #: Conductance to the ambient.
-    cooling: Annotated[float, Unit("W/K", ge=0)]
+    cooling: Annotated[float, Unit("W/K", ge=0), WHEEL_CONDUCTANCE]
     #: Conductance to the contained air through the rim's well.
-    air: Annotated[float, Unit("W/K", ge=0)] = 0.0
+    air: Annotated[float, Unit("W/K", ge=0), WHEEL_CONDUCTANCE] = 0.0
 
     @property
     def heat_capacity(self) -> float:

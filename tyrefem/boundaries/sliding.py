@@ -11,7 +11,7 @@ from tyrefem.boundaries import Law
 from tyrefem.boundaries.road import HalfSpace, RoadLaw
 from tyrefem.boundaries.road_film import effusivity
 from tyrefem.cards import Temperature
-from tyrefem.cards.plausible import ROAD_CONDUCTIVITY, SOLID_CAPACITY
+from tyrefem.cards.plausible import CONTACT_PRESSURE, DECOMPOSITION, ROAD_CONDUCTIVITY, SOLID_CAPACITY
 from tyrefem.plugins import Range, Trial, trial
 from tyrefem.quantity import Unit
 
@@ -31,7 +31,7 @@ class SlidingLaw(Law):
     rolls: ClassVar[bool] = False
     road_conductivity: Annotated[float, Unit("W/m/K", gt=0), ROAD_CONDUCTIVITY] | None = None
     road_heat_capacity: Annotated[float, Unit("J/m**3/K", gt=0), SOLID_CAPACITY] | None = None
-    decomposition_temperature: Temperature = 350.0
+    decomposition_temperature: Annotated[Temperature, DECOMPOSITION] = 350.0
 
     def road_effusivity(self, road: RoadLaw) -> float:
         """b of the road, J/m2/K/s^0.5: given here, or that of the road law, or its default."""
@@ -52,7 +52,7 @@ class UniformSliding(SlidingLaw):
     The default of ``pressure`` is the load over the modelled footprint, so that the total friction heat is mu F_z v_s.
     """
 
-    pressure: Annotated[float, Unit("Pa", gt=0)] | None = None
+    pressure: Annotated[float, Unit("Pa", gt=0), CONTACT_PRESSURE] | None = None
 
     @abstractmethod
     def friction(self, sliding_speed: float, rolling_speed: float) -> float:

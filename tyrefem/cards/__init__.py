@@ -11,9 +11,10 @@ import re
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Self, get_args
+from types import UnionType
+from typing import Annotated, Any, ClassVar, Self, Union, get_args, get_origin
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
 
 from tyrefem.brief import Brief, short
 from tyrefem.cards.entries import entry_number
@@ -62,6 +63,8 @@ class Card(Brief, BaseModel):
         for key in data:
             if key not in allowed:
                 raise InputError(f"unknown key '{key}'{nearest(str(key), allowed)}")
+        for key in _plain_numbers(cls) & set(data):
+            _refuse_truth(data[key], key)
         return data
 
     @classmethod
@@ -126,6 +129,38 @@ def _cards(key: str, value: Any) -> Iterator[tuple[str, Card]]:
             yield from _cards(f"{key}.{number}", entry)
 
 
+#: Annotations that read a field's value themselves.
+_READERS = (Unit, BeforeValidator)
+
+
+@functools.cache
+def _plain_numbers(card: type[Card]) -> frozenset[str]:
+    """Keys of fields with numbers that pydantic reads itself: it takes true and false as 1 and 0."""
+    return frozenset(
+        field.alias or name
+        for name, field in card.model_fields.items()
+        if not any(isinstance(mark, _READERS) for mark in field.metadata) and _is_number(field.annotation)
+    )
+
+
+def _is_number(annotation: Any) -> bool:
+    """Whether a field takes whole numbers or numbers, alone or in a tuple, also as an option."""
+    if annotation in (int, float):
+        return True
+    if get_origin(annotation) is Annotated:
+        base, *marks = get_args(annotation)
+        return _is_number(base) and not any(isinstance(mark, _READERS) for mark in marks)
+    return get_origin(annotation) in (Union, UnionType, tuple) and any(map(_is_number, get_args(annotation)))
+
+
+def _refuse_truth(value: Any, key: str) -> None:
+    """Raise `InputError` for true or false in place of a number, also in a list."""
+    if isinstance(value, bool):
+        raise InputError(f"must be a number, not {value!r}", field=key)
+    for number, entry in enumerate(value) if isinstance(value, list | tuple) else ():
+        _refuse_truth(entry, f"{key}.{number}")
+
+
 @functools.cache
 def _allowed(card: type[Card]) -> frozenset[str]:
     return frozenset(field.alias or name for name, field in card.model_fields.items())
@@ -154,7 +189,7 @@ def _one_error(error: ValidationError, data: Any, file: str | Path | None) -> In
         message = "missing; this field is required"
     elif first["type"] == "string_type":
         message = f"must be text, not {first['input']!r:.60}"
-    elif first["type"] == "dict_type":
+    elif first["type"] in ("dict_type", "model_attributes_type"):
         message = f"must be a table of keys, not {first['input']!r:.60}"
     elif first["type"] == "too_short":
         least = first["ctx"]["min_length"]

@@ -99,3 +99,29 @@ GAS_HEAT = Plausible(300.0, 15000.0, "J/kg/K", "argon 312 to hydrogen 14300; han
 SOLID_CAPACITY = Plausible(5e5, 5e6, "J/m**3/K", "light concrete to water, 4.2e6; handbook values from memory")
 ROAD_CONDUCTIVITY = Plausible(0.05, 60.0, "W/m/K", "snow and cork to a steel drum; handbook values from memory")
 WHEEL_MASS = Plausible(0.2, 500.0, "kg", "a kart's to an earth mover's wheel: an estimate")
+GAS_CONSTANT = Plausible(50.0, 4200.0, "J/kg/K", "sulphur hexafluoride 57, air 287, hydrogen 4124; from memory")
+GAS_DENSITY = Plausible(0.05, 100.0, "kg/m**3", "hydrogen 0.08, air 1.2, nitrogen at 40 bar 45; from memory")
+FILM_PER_SPEED = Plausible(
+    0.05, 50.0, "W*s/m**3/K", "NASA report 1.67 W/m2/K per m/s; thirty times more either way: an estimate"
+)
+CONTACT_RESISTANCE = Plausible(
+    1e-7, 0.1, "m**2*K/W", "pressed metals 1e-5, a millimetre of air 0.04; handbook values from memory"
+)
+WHEEL_CONDUCTANCE = Plausible(0.01, 1e4, "W/K", "a wheel of 0.05 to 10 m2 in air: an estimate")
+CONTACT_PRESSURE = Plausible(1e4, 2e7, "Pa", "tyres 0.1 to 3 MPa: an estimate")
+DECOMPOSITION = Plausible(100.0, 1000.0, "degC", "vulcanisates soften and decompose at 200 to 450 degC; from memory")
+STIFFNESS = Plausible(1e4, 2e7, "N/m", "bicycles 100, cars 200, lorries 1000, earth movers 5000 N/mm: an estimate")
+FOOTPRINT = Plausible(5e-3, 2.0, "m", "a model's wheel to an earth mover's: an estimate")
+RATED_LOAD = Plausible(10.0, 2e6, "N", "a model's wheel to an earth mover's, 1 MN: an estimate")
+RATED_PRESSURE = Plausible(2e4, 3e6, "Pa", "balloon tyres 0.3 bar to aircraft 16 bar, bicycles 10 bar: an estimate")
+WIRE_AREA = Plausible(1e-7, 5e-3, "m**2", "one wire of 0.4 mm to an earth mover's bead: an estimate")
+CORD_ENDS = Plausible(50.0, 5e4, "1/m", "steel cords of an earth mover 200 a ply to many plies of nylon: an estimate")
+BLOCK_LENGTH = Plausible(5e-4, 1.0, "m", "rubber between two sipes 3 mm to the lugs of a tractor: an estimate")
+THERMOCOUPLE_LAG = Plausible(1e-3, 600.0, "s", "bare wires 0.01 s to a probe in a well, 60 s: an estimate")
+THERMOCOUPLE_ERROR = Plausible(1e-3, 50.0, "delta_degC", "resolution 0.01 K to a wrong calibration: an estimate")
+PLACING = Plausible(1e-6, 0.05, "m", "a drilling machine 0.05 mm to a place by eye 10 mm: an estimate")
+ENERGY_DENSITY = Plausible(0.1, 1e7, "J/m**3", "a stiff bead 10 to a sheared belt edge 1e6 J/m3; rubber tears at 1e7")
+AIR_TEMPERATURE = Plausible(-90.0, 100.0, "degC", "weather -89 to 57 degC, a climatic chamber: an estimate")
+SOFTENED = Plausible(
+    1e-3, 1e3, "1", "rubber loses a factor of about 1000 from its glassy to its rubbery modulus; textbooks, from memory"
+)

@@ -15,6 +15,7 @@ from tyrefem.cli.shell import answer_with, say
 from tyrefem.errors import InputError, nearest
 
 if TYPE_CHECKING:
+    from tyrefem.inputs.study import StudyData
     from tyrefem.rig import RigCard
 
 #: Kinds of cards that may be checked by name, in this order.
@@ -172,6 +173,7 @@ def _card(path: Path) -> str:
             warned += warn(warnings_of(study_of_case), warned)
         return f"a campaign of {counted(len(campaign.cases), 'case')}"
     tables = check_study(checked)
+    _questions(checked)
     warn(checked.warnings)
     of_tables = table_notes(experiments(checked)) if tables else []
     notes = "".join(f"; {note.removeprefix('Note: ')}" for note in of_tables)
@@ -179,6 +181,23 @@ def _card(path: Path) -> str:
         f"a study of {counted(len(checked.card.drive.phases), 'phase')}, {checked.card.drive.end:g} s, "
         f"{counted(len(checked.sensors), 'sensor')}, {counted(tables, 'measured run')}{notes}"
     )
+
+
+def _questions(study: StudyData) -> None:
+    """Check the tables [explore] and [plan], where the study states them."""
+    explore, plan = study.card.explore, study.card.plan
+    if explore.model_fields_set & {"vary", "limits", "axes"}:
+        from tyrefem.realtime.box_model import check_explore
+
+        check_explore(study)
+    if plan.limits:
+        from tyrefem.plan.drives import candidate_drives
+
+        candidate_drives(study)
+    if plan.sensors:
+        from tyrefem.plan.places import with_candidate_sensors
+
+        with_candidate_sensors(study, study.sensors)
 
 
 def _rig_tables(rig: RigCard, path: Path) -> str:

@@ -121,6 +121,8 @@ class EffectOf:
         known = _all_effects(plugins)
         name = value.get("name")
         plugins.refuse(KIND, name, known=isinstance(name, str) and name in known)
+        if "name" not in value:
+            raise InputError(f"missing; it names the effect{nearest('', known)}", field="name")
         if not isinstance(name, str) or name not in known:
             wrong = f"unknown effect {name!r:.40}{nearest(str(name), known)}"
             raise InputError(f"{wrong}; your own needs its folder in {FOLDERS}", field="name")

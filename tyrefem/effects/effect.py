@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BeforeValidator, Field, GetCoreSchemaHandler, GetJsonSchemaHandler
+from pydantic import BeforeValidator, Field, GetCoreSchemaHandler, GetJsonSchemaHandler, model_validator
 from pydantic_core import CoreSchema, core_schema
 
 from tyrefem.cards import Card, Text
@@ -171,6 +171,19 @@ class Effect(Card):
     sd: dict[str, Any] = Field(default_factory=dict)
     #: Names of the measured runs in which the effect acts; None: in every run, and in a drive that is no measured run.
     runs: Annotated[tuple[Text, ...], BeforeValidator(_run_names)] | None = None
+
+    @model_validator(mode="after")
+    def _check_deviations(self) -> Effect:
+        """Refuse a standard deviation of no parameter, or that is none: a diagnosis would leave it out unseen."""
+        units = {parameter.name: parameter.prior.unit for parameter in self.parameters()}
+        for name, deviation in self.sd.items():
+            if name not in units:
+                raise InputError(f"'{name}' is no number of this effect{nearest(name, units)}", field="sd")
+            try:
+                Unit(units[name], ge=0)(deviation)
+            except InputError as error:
+                raise error.within(field=f"sd.{name}") from None
+        return self
 
     # -- parameters --------------------------------------------------------------------------------------------------
 

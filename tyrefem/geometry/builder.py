@@ -311,7 +311,7 @@ def _profile(layer: LayerCard, regions: Division, scale: Mapping[str, float], le
         profile = replace(profile, values=tuple(values.tolist()))
     except InputError as error:
         raise error.within(field=f"{field}.thickness") from None
-    if stations[0] > 1e-9 or stations[-1] < length - 1e-9:
+    if abs(stations[0]) > 1e-9 or stations[-1] < length - 1e-9:
         raise InputError(
             f"the table runs from {stations[0]:.4g} to {stations[-1]:.4g} m, but the section from 0 to {length:.4g} m",
             field=f"{field}.s",

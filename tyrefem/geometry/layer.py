@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from tyrefem.brief import PickledFields
 from tyrefem.errors import InputError
 from tyrefem.geometry.meridian import Line
+from tyrefem.geometry.tread_pattern import TreadPattern
 
 Array = NDArray[np.float64]
 
@@ -248,6 +249,10 @@ class Layered(Protocol):
     def rating(self) -> Rating | None: ...
     @property
     def nominal_width(self) -> float: ...
+    @property
+    def inner_volume(self) -> float | None: ...
+    @property
+    def pattern(self) -> TreadPattern | None: ...
     @property
     def overall_width(self) -> float: ...
     @property

@@ -77,7 +77,7 @@ class TwoArcs(PickledFields):
         if not self.sidewall_angle < 2 * np.pi:
             raise InputError(
                 f"the sidewall arc closes on itself: {self.length - self.shoulder_s:g} m of it at this radius is a"
-                f" turn of {np.degrees(self.sidewall_angle):.0f} deg, at most 360 deg is possible",
+                f" turn of {np.degrees(self.sidewall_angle):.4g} deg, at most 360 deg is possible",
                 field="parameters.sidewall_radius",
             )
 

@@ -8,7 +8,9 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.cards.plausible import BLOCK_LENGTH, RATED_LOAD, RATED_PRESSURE, WIRE_AREA
 from tyrefem.errors import InputWarning
+from tyrefem.geometry import measures
 from tyrefem.geometry.layer import Layered
 
 Array = NDArray[np.float64]
@@ -18,6 +20,8 @@ OVERHANG = 0.05
 WIDTH = (0.85, 1.25)
 #: Range of rated width and diameter over those of the section.
 RATED = (0.85, 1.15)
+#: Range of a measured over the drawn volume of the contained air (a judgement).
+VOLUME = (0.5, 2.0)
 #: Smallest turn of the meridian, rad, that is not rounding of its points: 0.1 mm in 6 mm are 1.9 deg.
 ROUNDING = np.radians(3.0)
 #: Kinks: smallest curvature over the meridian's mean; smallest turn, rad. Shipped lines reach 2.1 (judgements).
@@ -33,7 +37,7 @@ def warnings_of(section: Layered) -> tuple[InputWarning, ...]:
     >>> print(*warnings_of(load({"base": "passenger-205-55r16", "rating": {"width": "255 mm"}})))
     rating.width: the rated width is 255 mm and the nominal width 205 mm: check that the ratings are of this tyre
     """
-    return (*_tables(section), *_widths(section), *_meridian(section))
+    return (*_tables(section), *_widths(section), *_numbers(section), *_meridian(section))
 
 
 def _tables(section: Layered) -> Iterator[InputWarning]:
@@ -76,6 +80,25 @@ def _widths(section: Layered) -> Iterator[InputWarning]:
                 "check that the ratings are of this tyre",
                 field=f"rating.{name}",
             )
+
+
+def _numbers(section: Layered) -> Iterator[InputWarning]:
+    """Volume, rating and pattern: numbers of a slipped unit or decimal point."""
+    drawn = 2 * measures.gas_volume(section) if section.half else measures.gas_volume(section)
+    volume = section.inner_volume
+    if volume is not None and not VOLUME[0] <= volume / drawn <= VOLUME[1]:
+        yield InputWarning(
+            f"the measured volume is {volume * 1e3:.4g} l, but the section encloses {drawn * 1e3:.4g} l: check the "
+            "unit",
+            field="parameters.inner_volume",
+        )
+    if section.pattern is not None:
+        yield from filter(None, [BLOCK_LENGTH.warning(section.pattern.block_length, "pattern.block_length")])
+    rating = section.rating
+    if rating is not None:
+        numbers = {"load": RATED_LOAD, "pressure": RATED_PRESSURE, "bead_wire_area": WIRE_AREA}
+        unlikely = (likely.warning(getattr(rating, name), f"rating.{name}") for name, likely in numbers.items())
+        yield from filter(None, unlikely)
 
 
 def _meridian(section: Layered) -> Iterator[InputWarning]:

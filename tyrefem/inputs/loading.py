@@ -11,6 +11,7 @@ from typing import Annotated, ClassVar, Literal, Protocol
 
 from tyrefem.boundaries.road_film import hedekel_length
 from tyrefem.cards import Card, Text
+from tyrefem.cards.plausible import FOOTPRINT, STIFFNESS
 from tyrefem.errors import InputError
 from tyrefem.inputs.wheel_state import WheelState
 from tyrefem.quantity import Unit
@@ -46,7 +47,7 @@ class GivenFootprint(Card):
     """A measured length, at every load and on any drum; zero if the tyre does not touch the road."""
 
     law: Literal["given"]
-    length: Annotated[float, Unit("m", gt=0, le=4)]
+    length: Annotated[float, Unit("m", gt=0, le=4), FOOTPRINT]
     shorter_on_drum: ClassVar[bool] = False
 
     def on_flat_road(self, deflection: float, outer_radius: float) -> float:
@@ -103,7 +104,7 @@ class VerticalStiffness(Card):
     """A measured vertical stiffness: D = F / k."""
 
     law: Literal["vertical-stiffness"]
-    stiffness: Annotated[float, Unit("N/m", gt=0)]
+    stiffness: Annotated[float, Unit("N/m", gt=0), STIFFNESS]
     source: Text
 
     def load(self, deflection: float, pressure: float, tyre: RatedTyre | None) -> float:
@@ -129,6 +130,21 @@ class RatedTyre(Protocol):
     @property
     def pressure(self) -> float:
         """p_rated, Pa."""
+
+
+#: Smallest drum over the tyre's diameter: a smaller one is an obstacle, for which no contact law holds.
+SMALLEST_DRUM = 0.1
+
+
+def check_drum(drum_diameter: float, tyre_diameter: float) -> None:
+    """Raise `InputError` for a drum, m, that is too small for a tyre of a diameter, m."""
+    smallest = SMALLEST_DRUM * tyre_diameter
+    if drum_diameter < smallest:
+        raise InputError(
+            f"a drum of {drum_diameter * 1e3:.4g} mm is too small: at least a tenth of the tyre, "
+            f"{smallest * 1e3:.0f} mm",
+            field="drum_diameter",
+        )
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,8 @@ from tyrefem.boundaries.outside_air import OutsideAirLaw
 from tyrefem.boundaries.rim import RimLaw
 from tyrefem.boundaries.road import RoadLaw
 from tyrefem.boundaries.sliding import SlidingLaw
-from tyrefem.cards import Card, Temperature, Text
+from tyrefem.cards import Card, PositiveLength, Temperature, Text
+from tyrefem.cards.plausible import ENERGY_DENSITY, PLACING, THERMOCOUPLE_ERROR, THERMOCOUPLE_LAG
 from tyrefem.effects import Effect, EffectOf
 from tyrefem.errors import InputError, InputWarning, nearest
 from tyrefem.estimates.work import check_readings, smallest_tolerance
@@ -80,6 +81,14 @@ class GivenEnergy(Card):
         for region in section.regions:
             if region not in self.regions:
                 raise InputError(f"no strain energy for region '{region}' (it may be '0 J/m**3')", field="regions")
+
+    def warnings(self) -> tuple[InputWarning, ...]:
+        """The first unlikely energy of every region."""
+        unlikely = [
+            next(filter(None, (ENERGY_DENSITY.warning(energy, f"regions.{region}") for _, energy in rows)), None)
+            for region, rows in self.regions.items()
+        ]
+        return (*super().warnings(), *filter(None, unlikely))
 
     def without_effect(self, section: Section) -> tuple[InputWarning, ...]:
         """Warnings of rows so far outside their region that they have no effect."""
@@ -208,12 +217,12 @@ class Sensor(Card):
     s: Annotated[float, Unit("m")] | None = None
     depth: Annotated[float, Unit("m", ge=0)] | None = None
     below_surface: Annotated[float, Unit("m", ge=0)] | None = None
-    at: tuple[Annotated[float, Unit("m", gt=0)], Annotated[float, Unit("m")]] | None = None
-    position_sd: Annotated[float, Unit("m", ge=0)] = 1e-3
-    lag: Annotated[float, Unit("s", ge=0)] = 0.0
-    noise: Annotated[float, Unit("delta_degC", ge=0)] = 0.5
-    accuracy: Annotated[float, Unit("delta_degC", ge=0)] = 1.0
-    lag_sd: Annotated[float, Unit("s", ge=0)] = 2.0
+    at: tuple[PositiveLength, Annotated[float, Unit("m", ge=-20, le=20)]] | None = None
+    position_sd: Annotated[float, Unit("m", ge=0), PLACING] = 1e-3
+    lag: Annotated[float, Unit("s", ge=0), THERMOCOUPLE_LAG] = 0.0
+    noise: Annotated[float, Unit("delta_degC", ge=0), THERMOCOUPLE_ERROR] = 0.5
+    accuracy: Annotated[float, Unit("delta_degC", ge=0), THERMOCOUPLE_ERROR] = 1.0
+    lag_sd: Annotated[float, Unit("s", ge=0), THERMOCOUPLE_LAG] = 2.0
 
     @model_validator(mode="after")
     def _one_place(self) -> Sensor:
@@ -271,7 +280,7 @@ class MeasuredEntry(Card):
     run: Text | None = None
     drive: dict[str, Any] = Field(default_factory=dict)
     hold_out: bool = False
-    noise: Annotated[float, Unit("delta_degC", gt=0)] | None = None
+    noise: Annotated[float, Unit("delta_degC", gt=0), THERMOCOUPLE_ERROR] | None = None
     time_offset: Annotated[float, Unit("s")] = 0.0
     rename: dict[Text, Text] = Field(default_factory=dict)
     ignore: tuple[Text, ...] = ()
@@ -339,6 +348,9 @@ class StudyCard(Card):
         for name in self.sensors:
             if name in OUTPUTS or not name.strip():
                 raise InputError(f"'{name}' is a name that readings already use", field="sensors")
+            if name != name.strip() or len(name.splitlines()) != 1:
+                words = f"{name!r} is no name of a column: it begins or ends with a space, or has a line break"
+                raise InputError(words, field="sensors")
         return self
 
     @model_validator(mode="after")

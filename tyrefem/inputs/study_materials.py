@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from tyrefem import library
 from tyrefem.brief import Brief
+from tyrefem.cards import read_toml
 from tyrefem.errors import InputError, nearest
 from tyrefem.materials.card import MaterialCard
 from tyrefem.materials.cord_layers import check_cords_fit
@@ -103,6 +104,16 @@ def _card(
         before, path = like.written[region]
         data = library.over("material", reference, like.references[region], before)
         if data is not None:
-            return like.cards[region].checked(before, data, path), (data, path)
+            try:
+                return like.cards[region].checked(before, data, path), (data, path)
+            except InputError as error:
+                raise InputError(error.message, field=error.field) from None
     data, path, _ = library.load("material", reference, folder)
-    return MaterialCard.check(data, path), (data, path)
+    try:
+        return MaterialCard.check(data, path), (data, path)
+    except InputError as error:
+        if isinstance(reference, Mapping):
+            # Where the card alone is right, the error is in the study's changes.
+            MaterialCard.check(read_toml(path), path)
+            raise InputError(error.message, field=error.field) from None
+        raise

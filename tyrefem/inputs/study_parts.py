@@ -160,6 +160,10 @@ def _section(
     try:
         built, written = load_written(reference, near=folder)
     except InputError as error:
+        if isinstance(reference, Mapping) and "base" in reference and error.file is not None:
+            # Where the card alone is right, the error is in the study's changes.
+            load_written(reference["base"], near=folder)
+            error = InputError(error.message, field=error.field)
         raise error if error.file else error.within(field="section", file=file) from None
     _check_sides(built, file)
     return _full(built, card), written

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
+from tyrefem.cards.plausible import AIR_TEMPERATURE
 from tyrefem.errors import InputWarning
 from tyrefem.geometry import Section
 from tyrefem.inputs.study_card import StudyCard
@@ -26,7 +27,7 @@ def study_warnings(
     ['materials.tread.density.value']
     """
     warnings = [*card.warnings(), *_of_another_tyre(card, section), *_of_driven_temperatures(card)]
-    warnings += _of_mesh_file(card)
+    warnings += [*_of_ambient(card), *_of_mesh_file(card)]
     warnings += [warning.within(field="section") for warning in section.warnings]
     warnings += [*_of_materials(materials), *_of_crown_angles(card, section, materials)]
     if card.mechanics.energy is not None:
@@ -58,11 +59,25 @@ def _of_driven_temperatures(card: StudyCard) -> Iterator[InputWarning]:
             )
 
 
+def _of_ambient(card: StudyCard) -> Iterator[InputWarning]:
+    """The first ambient temperature of the drive that is unlikely, as one in kelvins or degF would be."""
+    same = len({phase.ambient for phase in card.drive.phases}) == 1
+    for phase in card.drive.phases:
+        field = "drive.ambient" if same else f"drive.phases.{phase.name}.ambient"
+        unlikely = [AIR_TEMPERATURE.warning(end, field) for end in (phase.ambient.start, phase.ambient.end)]
+        for warning in filter(None, unlikely):
+            yield warning
+            return
+
+
 def _of_mesh_file(card: StudyCard) -> Iterator[InputWarning]:
-    """Numbers of a mesher beside a mesh from a file: a finer size would change nothing."""
-    idle = [key for key in ("mesher", "size", "cell", "through") if key in card.mesh.model_fields_set]
-    if card.mesh.file is not None and idle:
-        yield InputWarning(f"not read, as the mesh comes from mesh.file: {', '.join(idle)}", field="mesh")
+    """Numbers of a mesher beside a mesh from a file, and of a file beside a mesher: they would change nothing."""
+    of_file = card.mesh.file is not None
+    keys = ("mesher", "size", "cell", "through") if of_file else ("names", "axes", "unit")
+    idle = [key for key in keys if key in card.mesh.model_fields_set]
+    if idle:
+        why = "the mesh comes from mesh.file" if of_file else "there is no mesh.file"
+        yield InputWarning(f"not read, as {why}: {', '.join(idle)}", field="mesh")
 
 
 def _of_crown_angles(

@@ -148,6 +148,11 @@ class ThermalCard(Card):
             if run.name in names:
                 raise InputError(f"a second run '{run.name}': it would count twice", field=f"runs.{number}.name")
             names.add(run.name)
+            if run.load is not None and run.rolling_resistance >= run.load:
+                raise InputError(
+                    f"{run.rolling_resistance:g} N must be less than the load, {run.load:g} N; it is about a hundredth",
+                    field=f"runs.{number}.rolling_resistance",
+                )
             coldest = min(run.surroundings(name) for name in SURROUNDINGS)
             for body, temperature in run.plateau.items():
                 if body in self.bodies and temperature < coldest - 3 * self.temperature_sd:

@@ -8,7 +8,7 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from tyrefem.cards import Card, PositiveLength, Text
-from tyrefem.cards.plausible import CORD_DIAMETER, CORD_MODULUS, LOSS_TANGENT, SHEAR_MODULUS
+from tyrefem.cards.plausible import CORD_DIAMETER, CORD_ENDS, CORD_MODULUS, LOSS_TANGENT, SHEAR_MODULUS
 from tyrefem.errors import InputError, InputWarning
 from tyrefem.materials.properties import Softening
 from tyrefem.quantity import Unit
@@ -165,7 +165,7 @@ class Cords(Card):
     modulus: Annotated[Modulus, CORD_MODULUS]
     compression_modulus: Annotated[float, Unit("Pa", ge=0, le=1e12)] | None = None
     diameter: Annotated[float, Unit("m", gt=0, le=0.02), CORD_DIAMETER]
-    ends: Annotated[float, Unit("1/m", gt=0)]
+    ends: Annotated[float, Unit("1/m", gt=0), CORD_ENDS]
     plies: Annotated[int, Field(ge=1, le=100)] = 1
     angle: Annotated[float, Unit("rad")]
     angle_radius: PositiveLength | None = None

@@ -8,13 +8,16 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, WithJsonSchema, model_validator
 
 from tyrefem.cards import Card, Temperature, Text
-from tyrefem.errors import InputError
+from tyrefem.cards.plausible import LOSS_TANGENT
+from tyrefem.errors import InputError, InputWarning
 from tyrefem.materials.loss_tangent import FrequencyTable, Loss, OfTemperature, PowerLaw, Prony, Relative, Shift
 from tyrefem.materials.properties import columns
 from tyrefem.quantity import Unit
 from tyrefem.quantity.pattern import row_schema
 
 Frequency = Annotated[float, Unit("Hz", gt=0, le=1e12)]
+#: Largest tan delta accepted.
+LARGEST = 10.0
 
 
 class ShiftCard(Card):
@@ -69,9 +72,14 @@ class LossFrequencyTable(OfFrequency):
         _ = self._tabulated
         return self
 
+    def warnings(self) -> tuple[InputWarning, ...]:
+        """The first unlikely tan delta of the table."""
+        rows = (LOSS_TANGENT.warning(value, f"table.{number}") for number, value in enumerate(self._tabulated.values))
+        return super().warnings() + tuple(filter(None, rows))[:1]
+
     @functools.cached_property
     def _tabulated(self) -> FrequencyTable:
-        frequencies, values = columns(self.table, ("Hz", "1"))
+        frequencies, values = columns(self.table, ("Hz", "1"), LARGEST)
         return FrequencyTable(frequencies, values, self.shift.law() if self.shift else None)
 
     def master_curve(self) -> Loss:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from pydantic import WithJsonSchema, model_validator
 
 from tyrefem.cards import Card, Temperature, Text
-from tyrefem.cards.plausible import Plausible
+from tyrefem.cards.plausible import SOFTENED, Plausible
 from tyrefem.errors import InputError, InputWarning
 from tyrefem.quantity import Unit
 from tyrefem.quantity.pattern import row_schema
@@ -60,8 +60,15 @@ class PropertyTable:
 FIRST = {"degC": "temperatures", "Hz": "frequencies"}
 
 
-def columns(rows: list[list[Any]], units: tuple[str, ...]) -> list[tuple[float, ...]]:
-    """Columns of a table of quantities; the first, temperature (degC) or frequency (Hz), must increase."""
+#: Highest temperature of a table, degC, as of every temperature of a card.
+_HIGHEST = 2000.0
+
+
+def columns(rows: list[list[Any]], units: tuple[str, ...], most: float | None = None) -> list[tuple[float, ...]]:
+    """Columns of a table of quantities; the first, temperature (degC) or frequency (Hz), must increase.
+
+    ``most``: largest value beside it.
+    """
     if len(rows) < 2:
         raise InputError("needs at least two rows", field="table")
     parsed = []
@@ -71,13 +78,18 @@ def columns(rows: list[list[Any]], units: tuple[str, ...]) -> list[tuple[float, 
             raise InputError(message, field=f"table.{number}")
         try:
             pairs = zip(row, units, strict=True)
-            parsed.append([Unit(unit, gt=None if unit == "degC" else 0)(cell) for cell, unit in pairs])
+            first, *others = pairs
+            parsed.append([_first(*first), *(Unit(unit, gt=0, le=most)(cell) for cell, unit in others)])
         except InputError as error:
             raise error.within(field=f"table.{number}") from None
     parsed_columns = list(zip(*parsed, strict=True))
     if any(later <= earlier for earlier, later in zip(parsed_columns[0], parsed_columns[0][1:], strict=False)):
         raise InputError(f"{FIRST[units[0]]} must rise from row to row, without duplicates", field="table")
     return parsed_columns
+
+
+def _first(cell: Any, unit: str) -> float:
+    return Unit(unit, le=_HIGHEST)(cell) if unit == "degC" else Unit(unit, gt=0)(cell)
 
 
 #: Temperature range of an exponential law, degC; constant beyond.
@@ -120,6 +132,17 @@ class Softening(Sourced):
     def uncertain_fields(self) -> tuple[tuple[str, ...], ...]:
         """The rate; a table is relative and has no single number."""
         return (("rate",),)
+
+    def warnings(self) -> tuple[InputWarning, ...]:
+        """An unlikely factor: the first row of a table, or that of an exponential law at 25 or 100 degC."""
+        if self.law == "table":
+            return super().warnings() + self._tabulated.unlikely(SOFTENED)
+        for temperature in (25.0, 100.0):
+            unlikely = SOFTENED.warning(self(temperature), "rate")
+            if unlikely is not None:
+                words = f"at {temperature:g} degC the factor {unlikely.message}"
+                return (*super().warnings(), InputWarning(words, field="rate"))
+        return super().warnings()
 
     @functools.cached_property
     def _tabulated(self) -> PropertyTable:

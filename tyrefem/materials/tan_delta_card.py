@@ -13,7 +13,7 @@ from tyrefem.cards import Temperature
 from tyrefem.cards.plausible import LOSS_TANGENT
 from tyrefem.errors import InputError, InputWarning
 from tyrefem.materials.law_of_card import law_name
-from tyrefem.materials.loss_frequency import LossFrequency, loss_over_frequency
+from tyrefem.materials.loss_frequency import LARGEST, LossFrequency, loss_over_frequency
 from tyrefem.materials.loss_tangent import Loss
 from tyrefem.materials.properties import PropertyTable, columns
 from tyrefem.materials.tan_delta_law import TanDeltaLaw
@@ -24,6 +24,8 @@ from tyrefem.quantity.pattern import row_schema
 Array = NDArray[np.float64]
 #: From absolute zero to the highest temperature allowed on a card, degC.
 _RUBBER = (-273.15, 2000.0)
+#: Temperatures of a warming tyre, degC, at which an exponential law is held against the likely range.
+WARMING = (25.0, 100.0)
 
 
 class LossTangent(TanDeltaLaw):
@@ -36,7 +38,7 @@ class LossTangent(TanDeltaLaw):
     """
 
     law: Literal["exponential", "constant", "table", "frequency"] = "exponential"
-    value: Annotated[float, Unit("1", ge=0, le=10), LOSS_TANGENT] | None = None
+    value: Annotated[float, Unit("1", ge=0, le=LARGEST), LOSS_TANGENT] | None = None
     at: Temperature = 25.0
     rate: Annotated[float, Unit("1/delta_degC", ge=-0.1, le=0.2)] | None = None
     table: Annotated[list[list[Any]] | None, WithJsonSchema(row_schema("degC", "1"))] = None
@@ -67,7 +69,17 @@ class LossTangent(TanDeltaLaw):
         if self.law == "frequency":
             at_reference = LOSS_TANGENT.warning(float(self(self.at)), "frequency")
             return warnings + tuple(filter(None, [at_reference]))
+        if self.law == "exponential" and self.value and not any(warning.field == "value" for warning in warnings):
+            return warnings + self._unlikely_later()
         return warnings
+
+    def _unlikely_later(self) -> tuple[InputWarning, ...]:
+        """An unlikely tan delta of an exponential law at the first of `WARMING` with one: by its rate or ``at``."""
+        for temperature in WARMING:
+            unlikely = LOSS_TANGENT.warning(float(self(temperature)), "rate")
+            if unlikely is not None:
+                return (InputWarning(f"at {temperature:g} degC tan delta {unlikely.message}", field="rate"),)
+        return ()
 
     @property
     def uncertain_fields(self) -> tuple[tuple[str, ...], ...]:
@@ -77,7 +89,7 @@ class LossTangent(TanDeltaLaw):
 
     @functools.cached_property
     def _tabulated(self) -> PropertyTable:
-        return PropertyTable(*columns(self.table or [], ("degC", "1")))
+        return PropertyTable(*columns(self.table or [], ("degC", "1"), LARGEST))
 
     @functools.cached_property
     def over_frequency(self) -> Loss:

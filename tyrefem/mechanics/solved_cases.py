@@ -10,7 +10,7 @@ import numpy as np
 
 from tyrefem.boundaries.contained_air import ATMOSPHERE
 from tyrefem.errors import InputError
-from tyrefem.inputs.loading import GivenFootprint, LoadCase, TrR64, load_case
+from tyrefem.inputs.loading import GivenFootprint, LoadCase, TrR64, check_drum, load_case
 from tyrefem.inputs.motion import motion_in
 from tyrefem.inputs.study import StudyData
 from tyrefem.inputs.wheel_state import wheel_state
@@ -164,6 +164,7 @@ def _load_case(study: StudyData, number: int, fraction: float, pressure_ratio: f
     # In this form a ratio of 1 leaves the pressure unchanged to the last bit.
     pressure = pressure + (pressure + ATMOSPHERE) * (pressure_ratio - 1)
     mechanics = study.card.mechanics
+    check_drum(phase.drum_diameter, section.outer_diameter)
     case = load_case(
         None if strain_law(study).presses else mechanics.load_law,
         section.rating,

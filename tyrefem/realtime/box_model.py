@@ -126,10 +126,38 @@ def explored(
         raise InputError(f"must be a positive number of kelvins, not {tolerance!r:.60}", field="tolerance")
     if scheduler is not None and not hasattr(scheduler, "outcomes"):
         raise InputError(f"must be Here, Local or Dask, not {scheduler!r:.60}", field="scheduler")
-    choice = study.card.explore
     if not isinstance(vary, Mapping | None):
         example = "{'drive.speed': ('10 mph', '40 mph')}"
         raise InputError(f"must be a mapping like {example}, not {vary!r:.60}", field="vary")
+    plan, pair = _box(study, vary, limits, axes)
+    return box_model(
+        plan, axes=pair, tolerance=tolerance or default_tolerance(study), scheduler=scheduler, progress=progress
+    )
+
+
+def check_explore(study: StudyData) -> None:
+    """Check a study's table ``[explore]`` without any run.
+
+    Raises
+    ------
+    InputError : a number, range, limit or axis of the table that is not allowed.
+    """
+    try:
+        plan, _ = _box(study, None, None, None)
+        check_explored(plan, default_tolerance(study))
+    except InputError as error:
+        of_table = (error.field or "").partition(".")[0] in type(study.card.explore).model_fields
+        raise error.within(field="explore" if of_table else None, file=study.file) from None
+
+
+def _box(
+    study: StudyData,
+    vary: Mapping[str, Any] | None,
+    limits: Mapping[str, Any] | None,
+    axes: tuple[str, str] | None,
+) -> tuple[Plan, tuple[str, str] | None]:
+    """The plan of a box, and the axes of its envelope: as given, or of the study's ``[explore]``."""
+    choice = study.card.explore
     ranges = vary or choice.vary or default_box(study)
     try:
         refuse_levels(ranges)
@@ -149,9 +177,7 @@ def explored(
     for key in pair or ():
         if key not in keys:
             raise InputError(f"'{key}' does not vary{nearest(key, keys)}", field="axes")
-    return box_model(
-        plan, axes=pair, tolerance=tolerance or default_tolerance(study), scheduler=scheduler, progress=progress
-    )
+    return plan, pair
 
 
 def box_model(

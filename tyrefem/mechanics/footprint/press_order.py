@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, get_args
 from tyrefem.errors import InputError, nearest
 from tyrefem.estimates import work as estimate
 from tyrefem.geometry.meshing.expected import QUADRATIC
+from tyrefem.inputs.loading import check_drum
 from tyrefem.inputs.study_card import FootprintMotion
 from tyrefem.mechanics.footprint.footprint import QUICK_LOOK
 from tyrefem.mechanics.footprint.pressed_tyre import TOLERANCE, mechanical_mesh
@@ -22,8 +23,6 @@ if TYPE_CHECKING:
 #: Requirements of a footprint on the study.
 NEEDS = Requirements("a footprint")
 MOTIONS = get_args(FootprintMotion)
-#: Smallest drum over the tyre's diameter. Harmonics and linear contact do not resolve smaller drums, i.e. obstacles.
-SMALLEST_DRUM = 0.1
 
 
 @dataclass(frozen=True)
@@ -81,13 +80,9 @@ def press_order(
     for name, (value, unit) in wanted.items():
         if value is not None and not value > 0:
             raise InputError(f"must be more than 0 {unit}, not {value:g} {unit}", field=name)
-    smallest = SMALLEST_DRUM * study.section.outer_diameter
     drum = phase.drum_diameter if drum_diameter is None else drum_diameter
-    if 0 < drum < smallest:
-        raise InputError(
-            f"a drum of {drum * 1e3:.4g} mm is too small: at least a tenth of the tyre, {smallest * 1e3:.0f} mm",
-            field="drum_diameter",
-        )
+    if drum > 0:
+        check_drum(drum, study.section.outer_diameter)
     road = Road(drum, camber)
     if camber and study.section.half:
         study = study.replace({"mesh.section": "full"})
