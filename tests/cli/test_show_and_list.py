@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import tomllib
 from collections.abc import Callable
 from pathlib import Path
@@ -121,6 +122,11 @@ def test_capital_letters_of_an_ending_are_no_matter(here: Path, capfd: pytest.Ca
     assert main(["sweep", "MINE.TOML", *coarse, *speeds, "--reduced", "never"]) == 0
     assert main(["new", "study", "205/60R15", "--out", "SIZE.TOML"]) == 0
     assert (here / "SIZE.TOML").is_file()
+
+
+def test_show_says_yes_and_no(capsys: pytest.CaptureFixture[str], here: Path) -> None:
+    assert main(["show", "section", NASA, "--out", "a.png"]) == 0
+    assert re.search(r"^half +yes$", capsys.readouterr().out, re.MULTILINE)
 
 
 def test_show_section_takes_changes(capsys: pytest.CaptureFixture[str]) -> None:
