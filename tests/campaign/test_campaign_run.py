@@ -7,6 +7,7 @@ import json
 import re
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pandas as pd
@@ -15,6 +16,7 @@ import pytest
 import tyrefem as tf
 from tyrefem.api import Study
 from tyrefem.cli import main
+from tyrefem.cli.run import _tell_campaign
 from tyrefem.errors import InputError
 from tyrefem.reports.campaign import bars, run_campaign, write_campaign_report
 from tyrefem.sweep import campaign as campaigns
@@ -157,6 +159,13 @@ def test_page_of_nothing_but_failures(campaign: CampaignData, folder: Path) -> N
     page = write_campaign_report(campaign, table, folder / "report.html").read_text(encoding="utf-8")
     assert "0 of 3 cases finished." in page
     assert "<img" not in page
+
+
+@pytest.mark.parametrize(("names", "words"), [(["a"], "1 case, 0 failed"), (["a", "b"], "2 cases, 0 failed")])
+def test_cases_are_counted(names: list[str], words: str, capsys: pytest.CaptureFixture[str]) -> None:
+    table = pd.DataFrame({"case": names, "hottest_degC": 80.0, "failure": ""})
+    _tell_campaign(SimpleNamespace(study=SimpleNamespace(name="a", title="A")), table, Path("out"), False)  # type: ignore[arg-type]
+    assert f"{words}; table in" in capsys.readouterr().out
 
 
 def test_command_line(folder: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -> None:

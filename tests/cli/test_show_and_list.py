@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import tomllib
 from collections.abc import Callable
 from pathlib import Path
@@ -14,6 +15,7 @@ import tyrefem as tf
 from tyrefem import library
 from tyrefem.cli import main
 from tyrefem.effects import catalogue
+from tyrefem.reports.inputs import boundary_rows
 
 PNG = b"\x89PNG\r\n\x1a\n"
 
@@ -25,6 +27,18 @@ def test_list_gives_every_name_and_title(kind: str, capsys: pytest.CaptureFixtur
     known = library.names({"sections": "section", "materials": "material", "studies": "study"}[kind])
     assert [line.split()[0] for line in lines] == sorted(known)
     assert all(len(line.split()) > 2 for line in lines)
+    # Titles stand in one column, also beside long names.
+    titles = {line.index(line.split(maxsplit=1)[1]) for line in lines}
+    assert len(titles) == 1
+
+
+def test_no_marks_of_docstrings_are_printed(capsys: pytest.CaptureFixture[str]) -> None:
+    for words in (["list", "laws"], ["list", "effects"], ["show", "effect", "swapped-channels"]):
+        assert main(words) == 0
+        assert "``" not in capsys.readouterr().out
+    films = [["0 m/s", "5 W/m**2/K"], ["9 m/s", "20 W/m**2/K"]]
+    outside = tf.study("nasa-22x5.5-8pr", {"boundaries.outside_air": {"law": "table", "table": films}})
+    assert "Rows [speed, film]; linear" in str(boundary_rows(outside))
 
 
 def test_list_goes_on_past_a_broken_card(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -108,6 +122,11 @@ def test_capital_letters_of_an_ending_are_no_matter(here: Path, capfd: pytest.Ca
     assert main(["sweep", "MINE.TOML", *coarse, *speeds, "--reduced", "never"]) == 0
     assert main(["new", "study", "205/60R15", "--out", "SIZE.TOML"]) == 0
     assert (here / "SIZE.TOML").is_file()
+
+
+def test_show_says_yes_and_no(capsys: pytest.CaptureFixture[str], here: Path) -> None:
+    assert main(["show", "section", NASA, "--out", "a.png"]) == 0
+    assert re.search(r"^half +yes$", capsys.readouterr().out, re.MULTILINE)
 
 
 def test_show_section_takes_changes(capsys: pytest.CaptureFixture[str]) -> None:

@@ -19,7 +19,7 @@ from tyrefem.compare.stored import read_comparison
 from tyrefem.errors import InputError
 from tyrefem.inputs.uncertain_numbers import UncertainNumber
 from tyrefem.output import atomic_folder, atomic_path
-from tyrefem.reports.comparison import deviations, save
+from tyrefem.reports.comparison import _phases, deviations, save
 
 EVERY_20 = np.arange(0.0, 1201.0, 20.0)
 
@@ -45,6 +45,13 @@ def folder(comparison, tmp_path_factory):
     (folder / "mine.txt").write_text("kept")
     assert save(comparison, folder) == folder / "comparison.html"
     return folder
+
+
+def test_a_phase_begins_where_the_one_before_ends():
+    """A reading at the border is of the phase that ends there: 600 s, not the next reading's 610 s."""
+    times = np.arange(0.0, 1201.0, 10.0)
+    names = np.where(times <= 600, "rolling", "cooling")
+    assert _phases(pd.DataFrame({"time_s": times, "phase": names}), 60.0) == [("rolling", 0, 10), ("cooling", 10, 20)]
 
 
 def test_the_files_and_no_other(folder):

@@ -10,7 +10,7 @@ import pytest
 
 from tyrefem.api import Study, study
 from tyrefem.compare import ComparisonData
-from tyrefem.compare.reduced_inputs import ReducedInputSettings
+from tyrefem.compare.reduced_inputs import ReducedInputCertificate, ReducedInputSettings
 from tyrefem.errors import InputError
 from tyrefem.processes import processes
 from tyrefem.reduced.pod import modes
@@ -23,6 +23,11 @@ QUICK = {"mesh.size": "9 mm", "mesh.element": "P1", "numerics.tolerance": "0.05 
 @pytest.fixture(scope="module")
 def quick() -> Study:
     return study("example-validation").replace(QUICK)
+
+
+@pytest.mark.parametrize(("cases", "words"), [(1, "; 1 full run differs from"), (3, "; 3 full runs differ from")])
+def test_a_certificate_in_words(cases: int, words: str) -> None:
+    assert words in ReducedInputCertificate(0.01, 0.1, cases, 2, 1, 0).sentence
 
 
 class Counting(Executor):

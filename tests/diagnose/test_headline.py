@@ -38,7 +38,7 @@ from tyrefem.diagnose.words.result_tables import rms_table
 from tyrefem.diagnose.words.sentences import noise_words, verdict_words
 from tyrefem.diagnose.words.support import alone_words, stated_words, support_words
 from tyrefem.measured import MeasuredRun
-from tyrefem.reports.diagnosis import _numbers, page
+from tyrefem.reports.diagnosis import _numbers, _set, page
 from tyrefem.reports.diagnosis_figures import pictures, probabilities_figure, rms_figure
 from tyrefem.reports.diagnosis_gap import AFTER
 from tyrefem.reports.diagnosis_summary import (
@@ -580,3 +580,11 @@ def test_noise_is_no_smallest_rms_where_a_study_comes_nearer() -> None:
             rms=lambda *, after, held_out, rms=rms: rms.get((after, held_out), math.nan), noise=0.5, stated_noise=0.5
         )
         assert _numbers(d)[-1]["note"] == note
+
+
+@pytest.mark.parametrize(("score", "shown"), [(0.0, "0.0"), (4.13, "-4.1"), (math.inf, "–")])
+def test_how_far_a_set_is_below_the_best(score: float, shown: str) -> None:
+    """A set that cannot be has no number of nats: a dash, no '-inf'."""
+    row = {"effects": ["wind"], "probability": 0.1, "log_score_below_best": score, "credible": True}
+    empty = {"rms_K": None, "held_out_rms_K": None, "p_value": None, "held_out_p": None}
+    assert _set(row | empty)["below"] == shown

@@ -6,6 +6,7 @@ import itertools
 import json
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -29,12 +30,19 @@ from tyrefem.diagnose.unknowns.energy_shapes import SHAPE
 from tyrefem.diagnose.unknowns.unknown import Unknown, of_effect
 from tyrefem.effects import catalogue
 from tyrefem.inputs.name_patterns import SCALES
+from tyrefem.reports.isolability import picture
 from tyrefem.schemas.answer_schema import answer_schema
 
 
 @pytest.fixture(scope="module")
 def isolability_result(case: Case, known: Sensitivities) -> Isolability:
     return isolability(case.study, known=known)
+
+
+def test_names_of_sensors_are_no_formulas() -> None:
+    candidates = [SimpleNamespace(name=key, key=key) for key in ("hot-road", "sensor-offset ($\\bad$)")]
+    known = SimpleNamespace(study="$\\bad$", candidates=candidates, separation=np.full((2, 2), 12.0))
+    assert picture(known).startswith(b"\x89PNG")  # type: ignore[arg-type]
 
 
 def test_every_candidate_has_a_row_and_nothing_else(isolability_result: Isolability) -> None:

@@ -76,6 +76,10 @@ def test_every_number_has_the_certificate_s_error_beside_it(page: str, explored:
     assert [row for row in shown["readings"] if not all(float(cell) > 0 for cell in row[1:5])] == []
     assert all("±" in tile for tile in shown["tiles"])
     assert shown["tiles"][2].count("±") == 2  # rolling resistance and its coefficient
+    # Two digits, as the command prints them: 0.13 K is not certified as 0.1.
+    hottest, field = re.findall(r"± (\S+) K", shown["badge"])
+    assert float(hottest) == pytest.approx(errors["hottest"], rel=0.05)
+    assert float(field) == pytest.approx(explored.certificate.field, rel=0.05)
     certified = shown["certified"]
     assert certified["lost max"].endswith(" K")
     assert certified["lost: rim"].endswith(" W")

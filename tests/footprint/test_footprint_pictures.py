@@ -7,11 +7,13 @@ import pytest
 
 from tyrefem.materials.loss_tangent import OfTemperature
 from tyrefem.mechanics.footprint.contact import Pressing
+from tyrefem.mechanics.footprint.cord_cycle import CordCycle
 from tyrefem.mechanics.footprint.example_tyre import PlainTyre
 from tyrefem.mechanics.footprint.footprint import Footprint
 from tyrefem.mechanics.footprint.loss import RevolutionLoss
 from tyrefem.mechanics.footprint.strain_harmonics import StrainHarmonics
 from tyrefem.reports.figures.footprint import (
+    cord_tension_figure,
     deformed_figure,
     harmonics_figure,
     pressure_map,
@@ -49,3 +51,20 @@ def test_pictures_carry_the_numbers(footprint: Footprint) -> None:
     assert [values[-1] for values in sums] == pytest.approx([100.0, 0.0])
     shown = history.axes[0].lines[2].get_ydata()
     assert shown == pytest.approx(100 * cycle.at(0.31, 0.0, np.linspace(-np.pi, np.pi, 37))[2])
+
+
+def test_long_names_of_layers_leave_the_legend_and_the_next_panel_free(footprint: Footprint) -> None:
+    angles = np.linspace(-np.pi, np.pi, 37)
+    straight, turned = np.exp(-(angles**2)), np.exp(-((angles - 0.3) ** 2))
+    names = ["the shoulder cushion's inner layer of cords, the second from inside", "bead"]
+    cords = [CordCycle(names[0], (0.3, 0.05), angles, turned, turned[::-1], 0.5, "N"),
+             CordCycle(names[1], (0.2, 0.06), angles, straight, straight, 0.5, "N")]  # fmt: skip
+    drawn = cord_tension_figure(footprint, cords)
+    drawn.draw_without_rendering()
+    renderer = drawn.canvas.get_renderer()  # type: ignore[attr-defined]
+    (legend,) = drawn.legends
+    assert [text.get_text() for text in legend.get_texts()] == ["+angle", "−angle", "cords", "inflated"]
+    key, heads = legend.get_window_extent(renderer), [axes._left_title for axes in drawn.axes]  # type: ignore[attr-defined]
+    assert not any(key.overlaps(text.get_window_extent(renderer)) for text in [*heads, *drawn.texts])
+    assert heads[0].get_window_extent(renderer).x1 < drawn.axes[1].get_tightbbox(renderer).x0  # type: ignore[union-attr]
+    assert drawn.axes[1].lines[0].get_color() not in [line.get_color() for line in drawn.axes[0].lines[:2]]

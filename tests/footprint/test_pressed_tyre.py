@@ -17,7 +17,8 @@ from tyrefem.geometry.meshing import build, write
 from tyrefem.mechanics.footprint.cord_cycle import cord_cycles
 from tyrefem.mechanics.footprint.footprint import Footprint
 from tyrefem.mechanics.footprint.press import Pressed, press
-from tyrefem.reports.press import RevolvedTyre, write_files
+from tyrefem.reports.figures.footprint import strain_history_figure
+from tyrefem.reports.press import RevolvedTyre, titled_places, write_files
 from tyrefem.reports.press_places import cycle_places, read_place
 
 STUDY = "nasa-22x5.5-8pr"
@@ -160,6 +161,10 @@ def test_tables_hold_what_the_pictures_show(pressed: Pressed, tmp_path: Path) ->
     with (tmp_path / "strain-cycle.csv").open() as file:
         cycle = list(csv.DictReader(file))
     assert {row["region"] for row in cycle} == {"tread"}
+    # The place before inflation in both, though the tread moves 3.7 mm outwards.
+    picture = strain_history_figure(pressed.cycle, titled_places(pressed, cycle_places(pressed, ["tread"])), count=9)
+    r, z = (1e3 * float(cycle[0][name]) for name in ("r_m", "z_m"))
+    assert picture.axes[0].get_title(loc="left") == f"tread, tread (r {r:.0f}, z {z:.0f} mm)"
     # Shears with theta are odd in the angle, the rest even.
     for component, sign in (("e_tt", 1), ("e_rt", -1)):
         history = np.array([float(row[component]) for row in cycle])

@@ -16,7 +16,7 @@ from tyrefem.errors import InputError
 from tyrefem.lumped.card import ThermalCard
 from tyrefem.lumped.identification import LumpedIdentification, identify
 from tyrefem.lumped.network import LumpedNetwork
-from tyrefem.reports.thermal_card import write_files
+from tyrefem.reports.thermal_card import _figure, write_files
 
 pytestmark = pytest.mark.fast
 
@@ -234,8 +234,10 @@ def test_names_of_bodies_are_no_formulas(tmp_path: Path) -> None:
     name = "$\\frac$"
     run = BODY["runs"][0] | {"plateau": {name: "70 degC"}, "warm_up": {name: "600 s"}}
     data = BODY | {"bodies": {name: {"heat_share": 1.0}}, "films": [{"between": [name, "air"]}], "runs": [run]}
-    write_files(identify(ThermalCard.check(data)), tmp_path / "out")
+    identified = identify(ThermalCard.check(data))
+    write_files(identified, tmp_path / "out")
     assert (tmp_path / "out" / "thermal-card.png").is_file()
+    assert [axes.get_xlabel() for axes in _figure(identified).axes] == ["measured [°C]", "measured [s]"]
 
 
 def test_a_resistance_above_the_load_is_refused() -> None:

@@ -93,6 +93,7 @@ def test_tables_hold_the_summary(result, written):
     for kind in ("generated", "stored", "lost"):
         for name, entry in summary["heat_budget"][kind].items():
             assert f"{name} {number(entry['energy_J'] / 1e3)} {number(entry['power_W'])}" in text
+    assert "of that contained air: stored" in text
     for row in summary["extremes"]:
         assert f"{row['temperature_degC']:.1f} {number(row['time_s'])} {row['r_m'] * 1e3:.1f}" in text
     assert f"{summary['mesh']['nodes']} nodes, {summary['mesh']['elements']} quads" in text

@@ -97,6 +97,9 @@ def test_no_heat_closes_to_nothing(cold: tf.Result, tmp_path: Path) -> None:
     assert budget.imbalance < 1e-3
     assert "no heat is exchanged" in " ".join(written(budget_figure(cold)))
     assert "share of the" not in " ".join(written(budget_figure(cold)))
+    # Rounding errors are no history: the axis is of 25 °C, not of 1e-11 K around it.
+    low, high = histories_figure(cold).axes[0].get_ylim()
+    assert (low, high) == pytest.approx((24.5, 25.52))
     assert "no heat is exchanged" in cold.report(tmp_path / "report.html").read_text()
 
 

@@ -10,12 +10,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import tomli_w
+from matplotlib.figure import Figure
 
 import tyrefem
 from tyrefem.errors import InputError
 from tyrefem.library import load
 from tyrefem.reports.figures import pictures, write_pictures
-from tyrefem.reports.figures.budget import budget_figure, waterfall
+from tyrefem.reports.figures.budget import _energies, budget_figure, waterfall
 from tyrefem.reports.figures.cells import linear_cells, triangles
 from tyrefem.reports.figures.heat_source import ZoneHeat, heat_source_figure, scale_top, zone_heat
 from tyrefem.reports.figures.histories import histories_figure
@@ -160,6 +161,17 @@ def test_budget_names_every_entry(result):
         names = [name for k, name in result.heat_budget.energies if k == kind]
         assert names
         assert all(f"{word} {name}" in shown for name in names)
+
+
+def test_a_share_that_rounds_to_nothing_has_no_sign(result):
+    budget = result.heat_budget
+    entries = [(kind, name) for kind, name in budget.energies if kind == "stored"]
+    cooled = {key: -1e-9 * series if key == entries[-1] else series for key, series in budget.energies.items()}
+    axes = Figure().subplots()
+    _energies(axes, waterfall(replace(budget, energies=cooled)), budget)
+    numbers = [text.get_text() for text in axes.texts]
+    assert any("(0.0 %)" in text for text in numbers)
+    assert not any("-0.0" in text for text in numbers)
 
 
 def test_heat_source_powers_add_up_to_the_drag(result):

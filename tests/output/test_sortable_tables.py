@@ -15,11 +15,11 @@ SCRIPT = (TEMPLATES / "sortable.html.j2").read_text(encoding="utf-8")
 LIVE = "explore.html"
 PAGES = [*(page for page in TEMPLATES.glob("*.html") if page.name != LIVE), TEMPLATES / "run.html.j2"]
 TABLE = """<table id="t"><thead>
-<tr><th>name</th><th>kPa</th><th>mixed</th><th>drift</th><th></th><th>W</th></tr></thead><tbody>
-<tr><td>run-10</td><td>1,200</td><td>3 mm</td><td>+0.50 ± 0.1 K</td><td>a</td><td>10 460</td></tr>
-<tr><td>run-9</td><td></td><td>2 kPa</td><td>−2.00 ± 0.1 K</td><td>b</td><td>1 234 567</td></tr>
-<tr><td>Run-2</td><td>90.5</td><td>10 mm</td><td>+1e1 ± 3 K</td><td>c</td><td>9870</td></tr>
-<tr><td>run-1</td><td>-3e2</td><td>–</td><td>+0.50 ± 0.1 K</td><td>d</td><td>95.5</td></tr>
+<tr><th>name</th><th>kPa</th><th>mixed</th><th>drift</th><th></th><th>W</th><th>time</th></tr></thead><tbody>
+<tr><td>run-10</td><td>1,200</td><td>0.25 mm</td><td>+0.50 ± 0.1 K</td><td>a</td><td>10 460</td><td>90 s (a)</td></tr>
+<tr><td>run-9</td><td></td><td>2 kPa</td><td>−2.00 ± 0.1 K</td><td>b</td><td>1 234 567</td><td>45 s</td></tr>
+<tr><td>Run-2</td><td>90.5</td><td>0.3 mm</td><td>+1e1 ± 3 K</td><td>c</td><td>9870</td><td>-5 s</td></tr>
+<tr><td>run-1</td><td>-3e2</td><td>–</td><td>+0.50 ± 0.1 K</td><td>d</td><td>95.5</td><td>200 s (b)</td></tr>
 </tbody></table><table id="f" data-fixed><thead><tr><th>x</th></tr></thead><tbody><tr><td>1</td></tr><tr><td>2</td></tr>
 </tbody></table>"""
 #: Clicks on a heading of the table `t`, and what the table is then: its last column, and the headings' order.
@@ -55,27 +55,30 @@ def after_clicks(columns: list[int], folder: Path) -> list[tuple[str, list[str |
 def test_a_click_sorts_up_then_down_then_as_written(tmp_path: Path) -> None:
     up, down, back, pressures, again, powers = after_clicks([0, 0, 0, 1, 1, 5], tmp_path)
     # Names with numbers in them, in the order of the numbers.
-    assert up == ("dcba", ["ascending", None, None, None, None, None])
-    assert down == ("abcd", ["descending", None, None, None, None, None])
-    assert back == ("abcd", [None] * 6)
+    assert up == ("dcba", ["ascending", None, None, None, None, None, None])
+    assert down == ("abcd", ["descending", None, None, None, None, None, None])
+    assert back == ("abcd", [None] * 7)
     # Numbers with thousands, signs and exponents; the empty cell is last both ways.
-    assert pressures == ("dcab", [None, "ascending", None, None, None, None])
+    assert pressures == ("dcab", [None, "ascending", None, None, None, None, None])
     assert powers[0] == "dcab"
-    assert again == ("acdb", [None, "descending", None, None, None, None])
+    assert again == ("acdb", [None, "descending", None, None, None, None, None])
 
 
 @pytest.mark.usefixtures("needs_chromium")
-def test_different_units_are_text_and_equal_rows_keep_their_order(tmp_path: Path) -> None:
-    mixed, drift = after_clicks([2, 3], tmp_path)
+def test_different_units_are_grouped_and_equal_rows_keep_their_order(tmp_path: Path) -> None:
+    """In a unit by size, also below zero and after the point; a time in other words in brackets is no other unit."""
+    mixed, again, drift, times = after_clicks([2, 2, 3, 6], tmp_path)
     assert mixed[0] == "bacd"
+    assert again[0] == "cabd"
     assert drift[0] == "badc"
+    assert times[0] == "cbad"
 
 
 @pytest.mark.usefixtures("needs_chromium")
 def test_headings_are_buttons_for_the_keyboard_and_the_report_s_tables_have_them(result, tmp_path: Path) -> None:
     shown = in_browser(f"<!doctype html><meta charset=utf-8>{TABLE}{SCRIPT}", tmp_path)
-    assert shown.count('<button type="button" class="sort">') == 5
-    assert shown.count('scope="col"') == 5
+    assert shown.count('<button type="button" class="sort">') == 6
+    assert shown.count('scope="col"') == 6
     assert "tabindex" not in shown
     page = result.report(tmp_path / "report.html").read_text(encoding="utf-8")
     report = in_browser(page, tmp_path)

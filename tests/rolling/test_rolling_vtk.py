@@ -12,6 +12,7 @@ from scipy.spatial import cKDTree
 
 from tyrefem import study
 from tyrefem.api import RollingWheel
+from tyrefem.reports.figures.rolling import contact_figure
 from tyrefem.reports.revolved_rolling import RevolvedRolling
 
 STUDY = "nasa-22x5.5-8pr"
@@ -34,6 +35,18 @@ def grid(leaning: RollingWheel, tmp_path_factory: pytest.TempPathFactory) -> pyv
     path = leaning.to_vtk(tmp_path_factory.mktemp("vtk") / "out")
     assert sorted(file.name for file in path.parent.iterdir()) == ["contact.vtu", "tyre.vtu"]
     return pyvista.read(path)
+
+
+def test_colour_bars_point_to_values_beyond_their_end(leaning: RollingWheel) -> None:
+    """Few points slide much faster than the others: the colours span the others, with a point for those."""
+    axes = contact_figure(leaning).axes
+    state = leaning.state
+    for number, size in enumerate((state.pressure / 1e3, np.linalg.norm(state.traction, axis=-1) / 1e3)):
+        end, touching = axes[2 * number + 1].get_ylim()[1], state.states > 0
+        extended = axes[2 * number + 1]._colorbar.extend  # type: ignore[attr-defined]
+        assert extended == ("max" if size[touching].max() > end else "neither")
+    assert axes[-1].get_ylim()[1] < state.sliding_speed[touching].max()
+    assert axes[-1]._colorbar.extend == "max"  # type: ignore[attr-defined]
 
 
 def test_the_tyre_is_whole_and_not_folded(grid: pyvista.UnstructuredGrid) -> None:

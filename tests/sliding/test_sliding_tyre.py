@@ -14,6 +14,7 @@ import tyrefem as tf
 from tyrefem.boundaries import friction_names as sliding
 from tyrefem.boundaries.friction_names import ASPHALT, LockedWheel, Solid
 from tyrefem.cli import main
+from tyrefem.reports.words import phase_lines
 from tyrefem.simulation.rolling_tyre import RollingTyre
 
 NAME = "nasa-22x5.5-8pr"
@@ -212,6 +213,11 @@ def test_report_shows_sliding_and_its_warnings_above_the_numbers(tmp_path):
     assert re.search(r"<td[^>]*>rolling \(locked\)</td><td>27\.78</td>", page)
     assert "from friction on the road" in page
     assert "Generated + sliding = stored + lost" in page
+    # The card's number is that of the half-space, and the table has both.
+    phase = result.sliding.hottest
+    assert f"half-space {phase.half_space_highest:.1f} °C; phase" in page
+    assert f"half-space {phase.half_space_highest:.1f} degC" in "\n".join(phase_lines(result.sliding))
+    assert f"<td>{phase.tread_highest:.1f}</td><td>{phase.half_space_highest:.1f}</td>" in page
     assert "Free, straight rolling" not in page
     assert "Free, straight rolling" in coarse().report(tmp_path / "free.html").read_text(encoding="utf-8")
 

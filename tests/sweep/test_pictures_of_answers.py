@@ -39,6 +39,25 @@ def test_a_tornado_names_its_numbers_whole_and_on_the_paper() -> None:
         assert label.get_window_extent(made.canvas.get_renderer()).x0 > 0
 
 
+def test_the_last_tick_of_a_tornado_is_on_the_paper() -> None:
+    rows = pd.DataFrame(
+        {
+            "number": [LONG],
+            "tolerance": [0.2],
+            "less": [-9.5e-4],
+            "more": [9.1e-4],
+            "range": [1.86e-3],
+            "nominal": [0.01],
+        }
+    )
+    data = SimpleNamespace(of=lambda answer: rows, tolerance=lambda number: "±20 %")
+    made = tornado(data, "rolling_resistance_coefficient")  # type: ignore[arg-type]
+    made.axes[0].set_xlim(right=1e-3)
+    made.draw_without_rendering()
+    last = made.axes[0].get_xticklabels()[-1]
+    assert last.get_window_extent(made.canvas.get_renderer()).x1 < made.bbox.x1
+
+
 def test_names_on_a_crowded_pareto_front_do_not_cover_each_other() -> None:
     steps = np.arange(12)
     table = pd.DataFrame({"variant": [str(200 + k) for k in steps], "x": 0.006 + 1e-5 * steps, "y": 45.0 - 0.3 * steps})

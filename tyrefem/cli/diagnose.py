@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from tyrefem.brief import counted
 from tyrefem.cli.common import (
     CaseOption,
     ForceOption,
@@ -132,7 +133,7 @@ def _tell(diagnosis: Diagnosis, folder: Path, page: Path, resumed: int) -> None:
     from tyrefem.diagnose.words.sentences import noise_words
 
     if resumed:
-        say(f"{resumed} simulations of an interrupted diagnosis were reused")
+        say(f"{counted(resumed, 'simulation')} of an interrupted diagnosis {'was' if resumed == 1 else 'were'} reused")
     for question, sentence in zip((label(diagnosis).upper(), *QUESTIONS[1:]), headline(diagnosis), strict=True):
         say(f"{question}: {sentence}")
     conformal = () if diagnosis.conformal is None else (diagnosis.conformal.words(diagnosis.judgement.ranking),)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from tyrefem.brief import counted
 from tyrefem.cli.common import (
     CaseOption,
     ForceOption,
@@ -129,7 +130,8 @@ def _words(result: TyreForces) -> str:
     formula, load = fit.formula, fit.formula.nominal_load
     lines = [
         result.study.title,
-        f"  {len(result.rows)} points from {result.points.load.min():.0f} to {result.points.load.max():.0f} N, "
+        f"  {counted(len(result.rows), 'point')} from {result.points.load.min():.0f} to "
+        f"{result.points.load.max():.0f} N, "
         f"{result.wheel.pressed.tyre.pressure / 1e3:.1f} kPa",
     ]
     if "lateral" in fit.errors:

@@ -42,13 +42,14 @@ def _cards(kind: str) -> Rows:
     from tyrefem import library
     from tyrefem.cards import read_toml
 
-    rows = []
-    for name, path in sorted(library.names(KINDS[kind]).items()):
+    rows, names = [], sorted(library.names(KINDS[kind]).items())
+    width = max([28, *(len(name) for name, _ in names)])
+    for name, path in names:
         try:
             title = str(read_toml(path).get("title", ""))
         except InputError as error:
             title = f"(cannot be read: {error.message})"
-        say(f"{name:28} {title}")
+        say(f"{name:{width}} {title}")
         rows.append({"name": name, "title": title, "file": str(path)})
     return rows
 
@@ -69,7 +70,7 @@ _SHIPPED = {
 
 
 def _first_line(cls: type) -> str:
-    return next(iter((cls.__doc__ or "").strip().splitlines()), "")
+    return next(iter((cls.__doc__ or "").strip().splitlines()), "").replace("``", "")
 
 
 def _row(line: str, cls: type, **row: str) -> dict[str, str]:

@@ -163,8 +163,8 @@ def _words(rolled: RolledStudy) -> str:
         f"  motion of the wheel  slip angle {math.degrees(state.motion.slip_angle):.3g} deg, slip "
         f"{100 * rolled.slip:.3g} %, camber {math.degrees(rolled.wheel.rolling.camber):.3g} deg, "
         f"{state.motion.speed:.4g} m/s",
-        f"  forces               F_x {f_x:.1f}, F_y {f_y:.1f}, F_z {f_z:.1f} N (forward, left, up)",
-        f"  moments              M_x {m_x:.2f}, M_y {m_y:.2f}, M_z {m_z:.2f} N m; torque {state.torque:.2f} N m",
+        f"  forces               F_x {f_x:z.1f}, F_y {f_y:z.1f}, F_z {f_z:.1f} N (forward, left, up)",
+        f"  moments              M_x {m_x:z.2f}, M_y {m_y:z.2f}, M_z {m_z:z.2f} N m; torque {state.torque:z.2f} N m",
     ]
     if f_y and abs(f_y) > 1e-3 * f_z:
         lines.append(f"  pneumatic trail      {state.pneumatic_trail * 1e3:.2f} mm")
@@ -220,7 +220,7 @@ def _curve_words(curve: SlipCurve) -> str:
     ]
     lines += [
         f"  {math.degrees(state.motion.slip_angle):10.3f} {100 * curve.wheel.slip(state):9.3f} "
-        f"{state.force[0]:9.1f} {state.force[1]:9.1f} {state.moment[2]:9.2f} {state.friction_power:11.1f}"
+        f"{state.force[0]:z9.1f} {state.force[1]:z9.1f} {state.moment[2]:z9.2f} {state.friction_power:11.1f}"
         for state in curve.states
     ]
     return "\n".join(lines)

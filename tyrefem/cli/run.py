@@ -178,7 +178,7 @@ def _tell_campaign(campaign: CampaignData, table: pd.DataFrame, folder: Path, pi
     shown = ["case", "hottest_degC", "rolling_resistance_coefficient", "contained-air_degC"]
     say(study.title)
     say(table[[name for name in shown if name in table]].to_string(index=False, float_format="%.4g"))
-    say(f"{len(table)} cases, {len(failed)} failed; table in {folder / 'campaign.csv'}")
+    say(f"{len(table)} case{'' if len(table) == 1 else 's'}, {len(failed)} failed; table in {folder / 'campaign.csv'}")
     if pictures:
         say(f"results in {folder}; read {folder / 'report.html'}")
     for entry in failed.itertuples():

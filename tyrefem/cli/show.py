@@ -106,6 +106,8 @@ def _formatted(value: Any) -> str:
         return ", ".join(f"{key} {_formatted(entry)}" for key, entry in value.items())
     if isinstance(value, list | tuple):
         return ", ".join(map(_formatted, value))
+    if isinstance(value, bool):
+        return "yes" if value else "no"
     return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 

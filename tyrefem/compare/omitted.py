@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.brief import counted
 from tyrefem.compare.experiment import Experiment
 from tyrefem.compare.sensors import OUTSIDE_THE_RUBBER
 from tyrefem.inputs.study import StudyData
@@ -79,9 +80,9 @@ def start_notes(study: StudyData, planned: Sequence[Experiment]) -> list[str]:
         start = float(np.median(first))
         if abs(start - initial) > WARM:
             notes.append(
-                f"Note: run '{experiment.name}' begins at {start:.0f} degC (median of {len(first)} sensors in the "
-                f"first {EARLY:g} s), its drive at {initial:.0f} degC: if the tyre was warm, state drive.initial in "
-                "the run's [[measured]] entry"
+                f"Note: run '{experiment.name}' begins at {start:.0f} degC (median of "
+                f"{counted(len(first), 'sensor')} in the first {EARLY:g} s), its drive at {initial:.0f} "
+                "degC: if the tyre was warm, state drive.initial in the run's [[measured]] entry"
             )
     return notes
 

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from tyrefem.brief import counted
 from tyrefem.compare.changed_cycles import Key
 from tyrefem.compare.interface import Computed
 from tyrefem.compare.packed_drive import Work, nearby_cycles
@@ -113,7 +114,8 @@ class ReducedInputCertificate:
         """The certificate as a note of a comparison."""
         return (
             f"Note: a reduced model computed {self.reduced} of {self.reduced + self.full} runs with a changed input; "
-            f"{self.cases} full runs differ from it by {self.worst:.2g} K at most"
+            f"{counted(self.cases, 'full run')} differ{'s' if self.cases == 1 else ''} from it by "
+            f"{self.worst:.2g} K at most"
         )
 
 

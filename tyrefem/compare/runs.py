@@ -137,8 +137,8 @@ class Runs:
         if not self.changed or not self._by_elements:
             return []
         return [
-            f"Note: {len(self.changed)} runs with a changed input; {self._changed_cycles} of them change the strain "
-            "cycle, which is solved from that of the drive"
+            f"Note: {counted(len(self.changed), 'run')} with a changed input; {self._changed_cycles} of them change "
+            "the strain cycle, which is solved from that of the drive"
         ]
 
     @property

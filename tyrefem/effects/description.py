@@ -24,7 +24,7 @@ def by_family(effects: dict[str, type[Effect]]) -> dict[str, list[type[Effect]]]
 
 def equation(effect: type[Effect]) -> str:
     """The effect's equation: the first line of the class's docstring."""
-    return " ".join(inspect.cleandoc(effect.__doc__ or "").split())
+    return " ".join(inspect.cleandoc(effect.__doc__ or "").split()).replace("``", "")
 
 
 def ports(effect: type[Effect]) -> str:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from tyrefem.brief import Brief, PickledFields
+from tyrefem.brief import Brief, PickledFields, counted
 from tyrefem.errors import InputError, InputWarning, nearest
 from tyrefem.geometry import measures, outlines
 from tyrefem.geometry.checks import check_possible
@@ -98,7 +98,7 @@ class Section(Brief, PickledFields):
     def _facts(self) -> Mapping[str, Any]:
         wear = "" if self.as_built is None else ", worn"
         return {
-            "part": f"{'half' if self.half else 'whole'}, {len(self.layers)} layers{wear}",
+            "part": f"{'half' if self.half else 'whole'}, {counted(len(self.layers), 'layer')}{wear}",
             "regions": self.regions,
             "boundaries": self.boundaries,
             "diameter": f"{self.outer_diameter * 1e3:.1f} mm, width {self.overall_width * 1e3:.1f} mm",

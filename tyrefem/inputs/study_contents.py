@@ -8,7 +8,7 @@ from dataclasses import InitVar, dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tyrefem.brief import Brief
+from tyrefem.brief import Brief, counted
 from tyrefem.errors import InputError, InputWarning
 from tyrefem.inputs.scale_warnings import scale_warnings
 from tyrefem.inputs.sensor_places import sensor_place
@@ -81,7 +81,7 @@ class StudyContents(Brief):
             "sensors": self.sensors,
             "effects": [effect.name for effect in self.effects],
             "measured": [Path(entry.table).name for entry in self.measured],
-            "uncertain": f"{len(self.uncertainty)} numbers",
+            "uncertain": counted(len(self.uncertainty), "number"),
             **({"cases": self.card.cases} if self.is_campaign else {}),
         }
 

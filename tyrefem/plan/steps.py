@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from tyrefem.brief import Brief
+from tyrefem.brief import Brief, counted
 from tyrefem.diagnose.numbers import percent
 
 if TYPE_CHECKING:
@@ -98,7 +98,7 @@ class PlanData(Brief):
     runs_left: int = 0
 
     def _title(self) -> str:
-        return f"of {self.study}: {len(self.steps)} steps"
+        return f"of {self.study}: {counted(len(self.steps), 'step')}"
 
     def _facts(self) -> Mapping[str, Any]:
         sets = [f"{entry.key} ({percent(entry.probability)})" for entry in self.beliefs.sets[:3]]

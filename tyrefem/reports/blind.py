@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tyrefem.brief import counted
 from tyrefem.interruption import keeping
 from tyrefem.output import atomic_path, write_json
 from tyrefem.reports.figures.style import FONT, PALETTE, QUIET, TITLE, add_axes, figure, plain, png, tidy, title
@@ -50,7 +51,7 @@ def picture(blind: Blind) -> Figure:
     if effects:
         _effects(add_axes(drawn, 3.9, 0.55, 6.3, below), effects)
     data = "data of another model, " if blind.data_model == "structural" else ""
-    facts = f"{len(blind.rows)} cases, {data}seed {blind.seed}; intervals of 95 %"
+    facts = f"{counted(len(blind.rows), 'case')}, {data}seed {blind.seed}; intervals of 95 %"
     title(drawn, f"Blind test of {blind.study}", facts)
     return drawn
 

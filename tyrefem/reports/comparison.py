@@ -84,11 +84,13 @@ def histories(comparison: ComparisonData, run: str) -> Figure:
 
 
 def _phases(residuals: pd.DataFrame, divisor: float) -> list[Phase]:
-    """Start and end of the readings of every phase of a run."""
-    spans = residuals.groupby("phase", sort=False)["time_s"].agg(["min", "max"]) / divisor
-    starts = spans["min"].sort_values()
-    ends = [*starts.iloc[1:], float(spans["max"].max())]
-    return [(str(name), float(start), float(end)) for (name, start), end in zip(starts.items(), ends, strict=True)]
+    """Start and end of the readings of every phase of a run; a reading at a border is of the phase that ends there."""
+    spans = residuals.groupby("phase", sort=False)["time_s"].agg(["min", "max"]).sort_values("min") / divisor
+    starts = [float(spans["min"].min()), *spans["max"].iloc[:-1]]
+    return [
+        (str(name), float(start), float(end))
+        for name, start, end in zip(spans.index, starts, spans["max"], strict=True)
+    ]
 
 
 def _history(

@@ -210,7 +210,7 @@ def _set(row: Mapping[str, Any]) -> dict[str, Any]:
     return {
         "name": " + ".join(row["effects"]) or "no effect",
         "probability": percent(row["probability"]),
-        "below": f"{-row['log_score_below_best']:z.1f}",
+        "below": f"{-row['log_score_below_best']:z.1f}" if math.isfinite(row["log_score_below_best"]) else "–",
         "credible": row["credible"],
         **_fitness(row),
     }

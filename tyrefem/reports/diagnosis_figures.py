@@ -137,7 +137,7 @@ def probabilities_figure(d: DiagnosisData, most: int = 8) -> Figure:
             chosen = name in members if axes is upper else name == best or set(name.split(" + ")) == members
             axes.barh(y, probability, height=0.7, color=AFTER if chosen else "#b9c0c8")
             axes.text(probability + 0.01, y, percent(probability), fontsize=FONT - 1, va="center", color=INK)
-        axes.set_yticks(range(len(rows)), [short(name, 50) for name, _ in rows])
+        axes.set_yticks(range(len(rows)), [short(name, 44) for name, _ in rows])
         axes.set_ylim(len(rows) - 0.4, -0.6)
         axes.set_xlim(0, 1)
         tidy(axes)

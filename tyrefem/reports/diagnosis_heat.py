@@ -30,6 +30,12 @@ if TYPE_CHECKING:
     from tyrefem.diagnose.heat.over_time import HeatOverTime
 
 
+#: Mean width of a letter, inches.
+LETTER = 0.073
+#: File of `heat_course_figure`; sentences elsewhere name it.
+FILE = "missing-heat-course.png"
+
+
 def heat_course_figure(d: DiagnosisData, over_time: HeatOverTime) -> Figure:
     """Draw the free course of every source, a panel each: a line per run with a band of one standard deviation.
 
@@ -53,7 +59,7 @@ def heat_course_figure(d: DiagnosisData, over_time: HeatOverTime) -> Figure:
             color = line_style(run)["color"]
             t, middle = knots / divisor, np.where(mask, mean, np.nan) / scale
             axes.fill_between(t, middle - sd / scale, middle + sd / scale, color=color, alpha=0.18, lw=0)
-            axes.plot(t, middle, color=color, lw=1.5, label=short(over_time.runs[run], 24))
+            axes.plot(t, middle, color=color, lw=1.5, label=over_time.runs[run])
         if math.isfinite(source.time):
             axes.axvspan(
                 (source.time - source.time_sd) / divisor, (source.time + source.time_sd) / divisor, color=INK,
@@ -62,14 +68,21 @@ def heat_course_figure(d: DiagnosisData, over_time: HeatOverTime) -> Figure:
         axes.axhline(0.0, color=INK, lw=0.7)
         axes.set_ylabel(f"[{written}]", fontsize=FONT)
         clear = "" if source.clear else " (not clear)"
-        panel_title(axes, f"{short(source_place(d, source), 70)}{clear}", pad=4)
-        axes.annotate(
-            short(course_words(source), 110), (0.01, 0.95), xycoords="axes fraction", fontsize=FONT - 1, va="top",
-        )  # fmt: skip
+        place = f"{short(source_place(d, source), 70)}{clear}"
+        panel_title(axes, place, pad=4)
+        course = course_words(source).replace(f" (picture {FILE})", "")
+        axes.annotate(short(course, 110), (0.01, 0.95), xycoords="axes fraction", fontsize=FONT - 1, va="top")
         axes.set_xlim(0.0, max(float(knots[-1]) for knots in over_time.knots) / divisor)
         tidy(axes)
         if number == 0:
-            axes.legend(fontsize=FONT - 0.5, frameon=False, ncols=3, loc="lower right", bbox_to_anchor=(1.0, 0.99))
+            lines, names = axes.get_legend_handles_labels()
+            columns = min(3, len(names))
+            # Each name has its part of what the panel's title leaves, less its line.
+            length = int(((8.2 - LETTER * len(place) - 0.3) / columns - 0.65) / LETTER)
+            axes.legend(
+                lines, [short(name, min(max(length, 4), 24)) for name in names], fontsize=FONT - 0.5, frameon=False,
+                ncols=columns, loc="lower right", bbox_to_anchor=(1.0, 0.99),
+            )  # fmt: skip
         if number == count - 1:
             axes.set_xlabel(f"time [{unit}]", fontsize=FONT)
     title(drawn, "Heat of unknown origin over time", "free course; band: 1 standard deviation")

@@ -12,7 +12,7 @@ from tyrefem.diagnose.heat.courses import BEGINS, ENDS
 from tyrefem.diagnose.unknowns.heat_patches import ALL_LAYERS, INNER, OUTER
 from tyrefem.diagnose.verdicts.verdict import PARTLY, UNEXPLAINED
 from tyrefem.diagnose.words.heat import is_told, source_amount
-from tyrefem.reports.diagnosis_heat import heat_course_figure
+from tyrefem.reports.diagnosis_heat import FILE, heat_course_figure
 from tyrefem.reports.diagnosis_sections import DIVERGING, draw_ground
 from tyrefem.reports.figures.canvas import Canvas, canvas
 from tyrefem.reports.figures.style import (  # fmt: skip
@@ -63,7 +63,7 @@ def missing_figures(d: DiagnosisData) -> dict[str, Figure]:
     """
     drawn = {"missing-heat.png": _missing_map(d), "missing-heat-stations.png": _missing_stations(d)}
     if d.missing.over_time is not None:
-        drawn["missing-heat-course.png"] = heat_course_figure(d, d.missing.over_time)
+        drawn[FILE] = heat_course_figure(d, d.missing.over_time)
     return drawn
 
 

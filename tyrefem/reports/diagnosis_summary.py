@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from tyrefem.brief import counted
 from tyrefem.diagnose.numbers import correction_amount, correction_subject, percent
 from tyrefem.diagnose.verdicts.verdict import CONFOUNDED, IDENTIFIED, NO_GAP, PARTLY, UNEXPLAINED
 from tyrefem.diagnose.words.corrections import corrections
@@ -231,7 +232,8 @@ def _made(d: DiagnosisData) -> list[str]:
     sensors = len({series.sensor for run in d.gap.runs for series in run.sensors})
     mesh, choice = d.original.mesh().summary(), d.original.card.diagnosis
     lines = [
-        f"{readings} readings of {sensors} sensors in {len(d.gap.runs)} runs; {len(d.candidates)} effects tried; "
+        f"{counted(readings, 'reading')} of {counted(sensors, 'sensor')} in {counted(len(d.gap.runs), 'run')}; "
+        f"{counted(len(d.candidates), 'effect')} tried; "
         f"prior probability that any is missing {percent(choice.effects_expected)}; discrepancy of a right model "
         f"{choice.discrepancy:g} K over {choice.correlation_time:g} s; films uncertain by "
         f"{100 * choice.film_sd:.0f} %.",

@@ -250,7 +250,7 @@ function showBadge() {
   badge.className = out.length || state.failure ? "badge outside" : "badge";
   badge.textContent = state.failure ? `No solution at this setting: ${state.failure}` : out.length
     ? `Outside the certified box (${out.map((number) => number.label).join("; ")}): the errors are not known`
-    : `certified: hottest ± ${significant(errors.hottest, 1)} K, anywhere ± ${significant(DATA.certificate.field, 1)} K`;
+    : `certified: hottest ± ${significant(errors.hottest, 2)} K, anywhere ± ${significant(DATA.certificate.field, 2)} K`;
 }
 
 /* ---- limits ---- */

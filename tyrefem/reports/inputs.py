@@ -23,7 +23,7 @@ def boundary_rows(study: StudyData) -> list[list[str]]:
     rubs = laws.sliding.rolls or any(phase.slides for phase in study.card.drive.phases)
     for side in ("road", "outside_air", "contained_air", "rim", *(["sliding"] if rubs else [])):
         law = getattr(laws, side)
-        words = (type(law).__doc__ or "").strip().partition("\n")[0]
+        words = (type(law).__doc__ or "").strip().partition("\n")[0].replace("``", "")
         rows.append([side.replace("_", " "), str(law.law), words, "; ".join(card_numbers(law))])
     return rows
 

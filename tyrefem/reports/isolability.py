@@ -17,7 +17,7 @@ def picture(isolability: Isolability) -> bytes:
     from matplotlib.figure import Figure
 
     kept = [i for i, candidate in enumerate(isolability.candidates) if candidate.name != "swapped-channels"]
-    names = [isolability.candidates[i].key for i in kept]
+    names = [plain(isolability.candidates[i].key) for i in kept]
     values = isolability.separation[np.ix_(kept, kept)].copy()
     np.fill_diagonal(values, np.nan)
     size = 2.6 + 0.19 * len(names)

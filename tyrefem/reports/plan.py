@@ -121,7 +121,7 @@ def _course(axes: Axes, plan: PlanData) -> None:
         )
     axes.axhline(plan.doubt, color=QUIET, ls="--", lw=1)
     axes.text(0.0, plan.doubt, " doubt between the sets", fontsize=FONT - 1, color=QUIET, va="bottom")
-    axes.set_xlim(-0.03 * max(cost[-1], 1.0), 1.25 * max(cost[-1], 1.0))
+    axes.set_xlim(-0.03 * max(cost[-1], 1.0), 1.4 * max(cost[-1], 1.0))
     axes.set_ylim(0.0, max(1.15 * plan.doubt, 0.05))
     axes.set_xlabel("cost", fontsize=FONT)
     axes.set_ylabel("expected information, nats", fontsize=FONT)

@@ -160,6 +160,16 @@ def _csv(rows: Iterable[Sequence[Any]]) -> str:
     return text.getvalue()
 
 
+def titled_places(pressed: Pressed, places: Sequence[CyclePlace]) -> dict[str, tuple[float, float]]:
+    """Name, region and place before inflation, as in the table -> (r, z) in the inflated tyre, m."""
+    titled = {}
+    for place in places:
+        r, z = pressed.cycle.elements.points[:, place.element, place.point]
+        before = "r {:.0f}, z {:.0f} mm".format(*(1e3 * length for length in place.place))
+        titled[f"{place.name}, {place.region} ({before})"] = (float(r), float(z))
+    return titled
+
+
 def _pictures(
     pressed: Pressed, places: Sequence[CyclePlace], curve: Any, cords: Sequence[CordCycle]
 ) -> dict[str, bytes]:
@@ -174,14 +184,12 @@ def _pictures(
     )
     from tyrefem.reports.figures.style import png
 
-    elements = pressed.cycle.elements
-    shown = {f"{place.name}, {place.region}": tuple(elements.points[:, place.element, place.point]) for place in places}
     figures = {
         "section": inflation_figure(pressed.tyre, pressed.study.name),
         "section-loaded": deformed_figure(pressed.footprint),
         "pressure": pressure_map_figure(pressed.footprint),
         "load-deflection": load_deflection_figure(pressed, curve),
-        "strain-cycle": strain_history_figure(pressed.cycle, shown),
+        "strain-cycle": strain_history_figure(pressed.cycle, titled_places(pressed, places)),
     }
     if cords:
         figures["cord-tension"] = cord_tension_figure(pressed.footprint, cords)

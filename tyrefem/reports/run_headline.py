@@ -101,7 +101,7 @@ def sliding_card(result: ResultData) -> list[dict[str, str]]:
         {
             "label": "Sliding contact, exit edge",
             "value": f"{phase.exit_edge_highest:.1f} °C",
-            "note": f"mean tread {phase.mean_highest:.1f} °C; phase {phase.name}, friction "
+            "note": f"{phase.surface} {phase.mean_highest:.1f} °C; phase {phase.name}, friction "
             f"{number(phase.friction, 2)}{limited}",
         }
     ]

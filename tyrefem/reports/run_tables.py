@@ -142,7 +142,7 @@ def budget_rows(result: ResultData) -> list[dict[str, Any]]:
         for name, series in entries:
             power = budget.powers.get((kind, name))
             cells = [
-                f"{word} {name}",
+                f"{word} {name.replace('-', ' ') if kind == 'lumped' else name}",
                 number(series[-1] / 1e3),
                 "–" if power is None else number(power[-1]),
                 share(series[-1]),

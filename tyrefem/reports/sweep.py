@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.brief import counted
 from tyrefem.output import atomic_path, jsonable
 from tyrefem.output.folder import BOOKKEEPING
 
@@ -173,7 +174,8 @@ def _numbers(design: DesignData) -> list[dict[str, str]]:
             low, high = (float(extreme(table, answer, least=least)[answer]) for least in (True, False))
             certificate = design.swept.certificate
             error = None if certificate is None else certificate.errors.get(answer)
-            note = f"over {len(table)} variants" + ("" if error is None else f"; each ± {shown(answer, error, 1)}")
+            note = f"over {counted(len(table), 'variant')}"
+            note += "" if error is None else f"; each ± {shown(answer, error, 1)}"
             first = f"{low:.4g}" if high == high else shown(answer, low)
             cards.append({"label": name_of(answer), "value": f"{first} – {shown(answer, high)}", "note": note})
     if design.tornado is not None:

@@ -72,7 +72,7 @@ def tornado(tornado_data: Tornado, answer: str) -> Figure:
     high = BAR * max(len(table), 2) + 0.1
     numbers = [f"{plain(number)}  {tornado_data.tolerance(number)}" for number in table["number"]]
     room = _room(numbers)
-    drawn = figure(room + 4.2, 1.0 + high + TITLE)
+    drawn = figure(room + 4.4, 1.0 + high + TITLE)
     axes = add_axes(drawn, room, 0.95, 4.0, high)
     places = np.arange(len(table))
     axes.barh(places, table["less"], height=0.62, color=PALETTE[0], label="number lower")

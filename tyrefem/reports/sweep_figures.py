@@ -290,7 +290,7 @@ def pareto(sweep: Sweep, best: pd.DataFrame, x: str, y: str) -> Figure:
     title(
         drawn,
         f"{capital(name_of(y))} against {name_of(x)}",
-        f"{len(best)} of {len(feasible)} variants are on the Pareto front",
+        f"{len(best)} of {len(feasible)} variants {'is' if len(best) == 1 else 'are'} on the Pareto front",
     )
     return drawn
 

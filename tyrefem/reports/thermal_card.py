@@ -80,7 +80,7 @@ def _figure(identified: LumpedIdentification) -> Any:
 
     drawn = figure(9.0, 3.8 + TITLE)
     names = list(identified.card.bodies)
-    for place, (kinds, unit) in enumerate(((("plateau",), "degC"), (("warm_up", "cool_down"), "s"))):
+    for place, (kinds, unit) in enumerate(((("plateau",), "°C"), (("warm_up", "cool_down"), "s"))):
         axes = add_axes(drawn, 0.75 + 4.5 * place, 0.6, 3.5, 3.0)
         rows = [row for row in identified.rows if row["quantity"] in kinds]
         for row in rows:
@@ -95,7 +95,7 @@ def _figure(identified: LumpedIdentification) -> Any:
             axes.plot(ends, ends, color=INK, lw=0.8)
         axes.set_xlabel(f"measured [{unit}]", fontsize=FONT)
         axes.set_ylabel(f"computed [{unit}]", fontsize=FONT)
-        axes.set_title("plateaus" if unit == "degC" else "times: o warm-up, □ cool-down", fontsize=FONT, loc="left")
+        axes.set_title("plateaus" if unit == "°C" else "times: o warm-up, □ cool-down", fontsize=FONT, loc="left")
         tidy(axes)
     for place, name in enumerate(names):
         drawn.text(0.62 + 0.12 * (place % 3), 0.965 - 0.04 * (place // 3), plain(f"● {name}"), fontsize=FONT,

@@ -101,14 +101,14 @@ def motion_words(motion: str, error: LinearisationError | None = None) -> str:
 
 
 def phase_lines(outcome: SlidingOutcome) -> Iterator[str]:
-    """One line per phase with slip: temperatures of mean tread and exit edge, friction and its limit."""
+    """One line per phase with slip: temperatures of exit edge and sliding surface, friction and its limit."""
     for phase in outcome.phases:
         limited = f", limited to {phase.friction_lowest:.2f} by decomposition" if phase.capped else ""
         locked = ", locked" if phase.locked else ""
         yield (
-            f"  sliding             {phase.exit_edge_highest:7.1f} degC at the exit edge of the contact, mean tread "
-            f"{phase.mean_highest:.1f} degC; {phase.name}{locked}: up to {phase.sliding_speed:.2f} m/s, friction "
-            f"{phase.friction:.2f}{limited}"
+            f"  sliding             {phase.exit_edge_highest:7.1f} degC at the exit edge of the contact, "
+            f"{phase.surface} {phase.mean_highest:.1f} degC; {phase.name}{locked}: up to "
+            f"{phase.sliding_speed:.2f} m/s, friction {phase.friction:.2f}{limited}"
         )
 
 

@@ -82,6 +82,11 @@ class SlidingPhase:
         """Highest mean temperature of the sliding surface; under a locked wheel, of the half-space."""
         return self.tread_highest if self.half_space_highest is None else self.half_space_highest
 
+    @property
+    def surface(self) -> str:
+        """Whose temperature `mean_highest` is, in words."""
+        return "mean tread" if self.half_space_highest is None else "half-space"
+
 
 @dataclass(frozen=True, eq=False)
 class SlidingOutcome(Brief):
@@ -102,8 +107,8 @@ class SlidingOutcome(Brief):
 
     def _facts(self) -> Mapping[str, Any]:
         return {
-            phase.name: f"{phase.sliding_speed:.3g} m/s, mean tread {phase.mean_highest:.0f} degC at most, exit edge "
-            f"{phase.exit_edge_highest:.0f} degC at {phase.exit_edge_time:g} s"
+            phase.name: f"{phase.sliding_speed:.3g} m/s, {phase.surface} {phase.mean_highest:.0f} degC at most, exit "
+            f"edge {phase.exit_edge_highest:.0f} degC at {phase.exit_edge_time:g} s"
             for phase in self.phases
         }
 

@@ -7,7 +7,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Self
 
-from tyrefem.brief import Brief
+from tyrefem.brief import Brief, counted
 from tyrefem.conduction import SolverError
 from tyrefem.errors import InputError
 from tyrefem.estimates import work as estimate
@@ -99,7 +99,7 @@ class CampaignData(Brief):
             mean = sum(run.total.time for run in runs) / len(runs)
             estimate.warn_if_long(
                 mean * count,
-                f"{count:,} cases of {self.study.name}",
+                f"{counted(count, 'case')} of {self.study.name}",
                 lambda: runs[0].quick_look(lambda run: run.total.time * count),
             )
 

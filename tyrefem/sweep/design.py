@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
-from tyrefem.brief import Brief
+from tyrefem.brief import Brief, counted
 from tyrefem.errors import InputError, InputWarning, nearest
 from tyrefem.inputs.study import StudyData
 from tyrefem.mechanics.cautions import warnings_of
@@ -172,7 +172,7 @@ class Questions:
     @property
     def words(self) -> str:
         """A line that describes the planned work."""
-        parts = [f"{len(self.plan.variants)} variants"] if self.card.sampled else []
+        parts = [counted(len(self.plan.variants), "variant")] if self.card.sampled else []
         if self.card.optimise is not None:
             parts.append(f"an optimum of {self.card.optimise.answer} by {self.card.optimise.runs} variants at most")
         parts += [question.words for question in self.further]

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
+from tyrefem.brief import counted
 from tyrefem.estimates import work as estimate
 from tyrefem.simulation.estimate import RunEstimate
 from tyrefem.sweep.reduced_tasks import by_model
@@ -104,7 +105,7 @@ class VariantEvaluation:
         if self.execution.reduced == "never":
             return
         if not self._trains(expected):
-            self.why_full = f"{expected} variants are too few to train for"
+            self.why_full = f"{counted(expected, 'variant')} {'is' if expected == 1 else 'are'} too few to train for"
             return
         self.reduced = True
         if self.certificate is None:
@@ -134,7 +135,9 @@ class VariantEvaluation:
             fails = f" by a reduced model, or {estimate.duration(full(run))} by full runs if none can be certified"
             return f"{fails if trains else ''}{run.quick_look(time)}"
 
-        estimate.warn_if_long(time(run), f"{self.at_most}{expected:,} variants of {self.plan.study.name}", more)
+        estimate.warn_if_long(
+            time(run), f"{self.at_most}{counted(expected, 'variant')} of {self.plan.study.name}", more
+        )
 
     def _train_model(self) -> None:
         from tyrefem.reduced.model import NotReducibleError

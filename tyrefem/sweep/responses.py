@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tyrefem.brief import counted
 from tyrefem.sweep.part import InSentences
 from tyrefem.sweep.sweep import Sweep
 from tyrefem.variants.answer_units import difference_unit, name_of, shown
@@ -126,7 +127,9 @@ def words(sweep: Sweep, wanted: tuple[str, ...] = ()) -> list[str]:
             some = where if table[answer].isna().any() else ""
             sentences.append(f"Main effects on the {name_of(answer)}, averaged over the others{some}: {moved}.")
         elif numbers := [varied.label for varied in sweep.plan.varied if varied.heading in table]:
-            count = f"{len(table)} variants do not tell {len(numbers)} numbers apart"
+            does = "does" if len(table) == 1 else "do"
+            many = counted(len(numbers), "number")
+            count = f"{counted(len(table), 'variant')} {does} not tell {many} apart"
             sentences.append(f"No main effects on the {name_of(answer)}: {count}.")
     return sentences
 

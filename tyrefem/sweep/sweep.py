@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Unpack
 import numpy as np
 from numpy.typing import NDArray
 
-from tyrefem.brief import Brief
+from tyrefem.brief import Brief, counted
 from tyrefem.cache import Cache
 from tyrefem.errors import InputError, nearest
 from tyrefem.sweep.evaluation import VariantEvaluation
@@ -64,7 +64,7 @@ class Sweep(Brief):
             "varied": self.plan.headings,
             "variants": f"{len(self.outcomes)} of {len(self.plan.variants)} finished, {len(self.failed)} failed",
             "answers": self.answers,
-            "answered by": f"{len(self.outcomes) - reduced} full runs"
+            "answered by": counted(len(self.outcomes) - reduced, "full run")
             + (f", {reduced} by the reduced model, error {self.certificate.error:.2g} K" if self.certificate else ""),
             "wall time": f"{self.seconds:.3g} s",
         }

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from tyrefem.brief import Brief
+from tyrefem.brief import Brief, counted
 from tyrefem.diagnose.verdicts.verdict import RankedSet
 from tyrefem.errors import InputError
 
@@ -135,6 +135,6 @@ def read_calibration(path: Path, study: str, sensors: Sequence[str], runs: Seque
         message = f"belongs to another layout: its sensors are {', '.join(known.sensors)}; those of {study} are"
         raise InputError(f"{message} {', '.join(sensors)}", file=file)
     if len(known.runs) != len(runs):
-        message = f"belongs to another layout: it has {len(known.runs)} runs, {study} has {len(runs)}"
+        message = f"belongs to another layout: it has {counted(len(known.runs), 'run')}, {study} has {len(runs)}"
         raise InputError(message, file=file)
     return known

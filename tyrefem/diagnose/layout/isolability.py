@@ -130,9 +130,10 @@ class Isolability:
         """The results as lines of text: table, effects that are not seen, groups, fewest runs, notes."""
         table = self.table
         shown = self._as_written()[["effect", "unit", "usual", "seen_from", "told_from", "last_rival"]]
-        can = table["identifiable_at_usual"]
+        can = int(table["identifiable_at_usual"].sum())
+        at = "is identifiable at its" if can == 1 else "are identifiable at their"
         lines = [shown.to_string(index=False, float_format="%.3g")]
-        lines.append(f"{int(can.sum())} of {len(table)} effects are identifiable at their usual amplitude.")
+        lines.append(f"{can} of {len(table)} effects {at} usual amplitude.")
         never = table.loc[~np.isfinite(table["seen_from"]), "effect"]
         if len(never):
             lines.append("Not seen by these sensors and runs at any amplitude: " + ", ".join(never) + ".")

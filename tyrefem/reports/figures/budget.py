@@ -119,7 +119,7 @@ def _energies(axes: Axes, bars: list[Bar], budget: HeatBudget) -> None:
     for row, bar in enumerate(bars):
         axes.barh(row, (bar.end - bar.start) / factor, left=bar.start / factor, color=KINDS[bar.kind], height=0.72)
         axes.plot([bar.end / factor] * 2, [row - 0.36, row + 1.36], color=QUIET, lw=0.6)
-        share = f" ({100 * bar.energy / made:.1f} %)" if made > 0 else ""
+        share = f" ({100 * bar.energy / made:z.1f} %)" if made > 0 else ""
         texts.append(format(bar.energy / factor, form) + share)
         axes.annotate(
             texts[-1], (max(bar.start, bar.end) / factor, row), xytext=(4, 0), textcoords="offset points", va="center",

@@ -19,10 +19,12 @@ from tyrefem.reports.figures.style import (
     TITLE,
     add_axes,
     figure,
+    legend,
     line_style,
     millimetres,
     plain,
     section_axes,
+    short,
     si,
     tidy,
     title,
@@ -123,7 +125,7 @@ def pressure_map(footprint: Footprint) -> tuple[Array, Array, Array]:
 
 
 def strain_history_figure(cycle: StrainHarmonics, places: dict[str, tuple[float, float]], count: int = 361) -> Figure:
-    """Draw the six strains round the wheel at named places (r, z), m."""
+    """Draw the six strains round the wheel at named places (r, z) of the inflated tyre, m."""
     drawn = figure(10.4, 0.1 + 2.3 * len(places) + TITLE)
     angles = np.linspace(-np.pi, np.pi, count)
     height = float(drawn.get_size_inches()[1])
@@ -131,7 +133,7 @@ def strain_history_figure(cycle: StrainHarmonics, places: dict[str, tuple[float,
         axes = add_axes(drawn, 0.8, height - TITLE - 2.3 * (number + 1) + 0.45, 8.2, 1.7)
         for k, (component, history) in enumerate(zip(LABELS.values(), cycle.at(r, z, angles), strict=True)):
             axes.plot(np.degrees(angles), 100 * history, lw=1.3, label=component, **line_style(k))
-        axes.set_title(plain(f"{name} (r {r * 1e3:.0f}, z {z * 1e3:.0f} mm)"), fontsize=FONT, loc="left", color=INK)
+        axes.set_title(plain(name), fontsize=FONT, loc="left", color=INK)
         axes.set_ylabel("strain [%]", fontsize=FONT)
         axes.set_xlim(-180, 180)
         axes.set_xticks(range(-180, 181, 45))
@@ -234,6 +236,7 @@ def cord_tension_figure(footprint: Footprint, cords: Sequence[CordCycle]) -> Fig
     rows = (len(cords) + 1) // 2
     drawn = figure(10.4, 0.35 + PANEL * rows + TITLE)
     height = float(drawn.get_size_inches()[1])
+    handles: dict[str, Any] = {}
     for number, layer in enumerate(cords):
         row, column = divmod(number, 2)
         axes = add_axes(drawn, 0.75 + 5.1 * column, height - TITLE - PANEL * (row + 1) + 0.35, 4.2, PANEL - 0.65)
@@ -241,21 +244,25 @@ def cord_tension_figure(footprint: Footprint, cords: Sequence[CordCycle]) -> Fig
         scale, unit = si(largest, layer.unit)
         degrees = np.degrees(layer.angles)
         crossed = not np.allclose(layer.plus, layer.minus, rtol=0, atol=1e-3 * largest)
-        axes.plot(degrees, layer.plus / scale, color=PALETTE[0], lw=1.4, label="+angle" if crossed else "cords")
         if crossed:
+            axes.plot(degrees, layer.plus / scale, color=PALETTE[0], lw=1.4, label="+angle")
             axes.plot(degrees, layer.minus / scale, color=PALETTE[1], lw=1.2, ls=(0, (5, 1.5)), label="−angle")
+        else:
+            axes.plot(degrees, layer.plus / scale, color=PALETTE[2], lw=1.4, label="cords")
         axes.axhline(layer.inflated / scale, color=QUIET, lw=0.9, ls=(0, (1.2, 1.2)), label="inflated")
         axes.axhline(0.0, color=INK, lw=0.5)
         r, z = (1e3 * x for x in layer.place)
         what = "cord" if layer.unit == "N" else "layer"
-        axes.set_title(plain(f"{layer.region} (r {r:.0f}, z {z:.0f} mm)"), fontsize=FONT, loc="left", color=INK)
+        name = f"{short(layer.region, 32)} (r {r:.0f}, z {z:.0f} mm)"
+        axes.set_title(name, fontsize=FONT, loc="left", color=INK)
         axes.set_ylabel(f"{what} [{unit}]", fontsize=FONT)
         axes.set_xlim(-180, 180)
         axes.set_xticks(range(-180, 181, 60))
         tidy(axes)
-        axes.legend(fontsize=FONT - 1.5, frameon=False, loc="lower right", bbox_to_anchor=(1.0, 0.97), ncols=3)
+        handles |= {str(line.get_label()): line for line in axes.lines if not str(line.get_label()).startswith("_")}
         if number >= len(cords) - 2:
             axes.set_xlabel("angle from the middle of the footprint [°]", fontsize=FONT)
+    legend(drawn, [handles[name] for name in ("+angle", "−angle", "cords", "inflated") if name in handles])
     title(drawn, "Cord tension round the wheel, at its maximum in each layer", described(footprint))
     return drawn
 

@@ -9,6 +9,7 @@ import numpy as np
 from tyrefem.inputs.motion import motion_in
 from tyrefem.reports.figures.phases import draw_phases, make_room
 from tyrefem.reports.figures.style import (
+    EVEN,
     FONT,
     INK,
     QUIET,
@@ -48,6 +49,8 @@ def histories_figure(result: ResultData) -> Figure:
     axes = add_axes(drawn, LEFT, below, 10.0 - LEFT - RIGHT, HIGH)
     labels = _lines(axes, result, divisor)
     low, high = axes.get_ylim()
+    if high - low < EVEN:  # rounding errors are no history
+        low, high = (low + high) / 2 - 0.5, (low + high) / 2 + 0.5
     axes.set_ylim(low, high + 0.02 * (high - low))
     make_room(axes, bands)
     axes.set_ylabel("temperature [°C]", fontsize=FONT)

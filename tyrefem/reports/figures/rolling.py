@@ -85,7 +85,8 @@ def contact_figure(rolled: RolledStudy) -> Figure:
         axes.set_xlabel("forward x [mm]", fontsize=FONT)
         axes.set_ylabel("left y [mm]", fontsize=FONT)
         tidy(axes, grid=False)
-        bar = drawn.colorbar(filled, cax=add_axes(drawn, 3.5 + 4.35 * number, 0.7, 0.1, 3.0))
+        above = "max" if float(values[touching].max(initial=0.0)) > highest else "neither"
+        bar = drawn.colorbar(filled, cax=add_axes(drawn, 3.5 + 4.35 * number, 0.7, 0.1, 3.0), extend=above)
         bar.set_label(label, fontsize=FONT)
         bar.ax.tick_params(labelsize=FONT)
     title(drawn, f"{rolled.study.name}: footprint", f"{described(rolled)}; dots: points that slip")

@@ -36,6 +36,8 @@ GENERATED, SLIDING, STORED, LOST = "#D55E00", "#8C510A", "#0072B2", "#009E73"
 
 #: Perceptually uniform; the second for quantities other than temperature.
 ENERGY_MAP = "viridis"
+#: Smallest range of temperatures that is drawn as a range, K.
+EVEN = 0.01
 DPI = 110
 FONT = 9.0
 

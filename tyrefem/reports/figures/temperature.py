@@ -18,7 +18,7 @@ from tyrefem.reports.figures.canvas import (
     sides,
 )
 from tyrefem.reports.figures.cells import triangles
-from tyrefem.reports.figures.style import FONT, INK, Label, millimetres, short, temperature_map, time_unit, title
+from tyrefem.reports.figures.style import EVEN, FONT, INK, Label, millimetres, short, temperature_map, time_unit, title
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -26,8 +26,6 @@ if TYPE_CHECKING:
     from tyrefem.simulation.result import ResultData
 
 Array = NDArray[np.float64]
-#: Smallest range of a field with a hottest point, K.
-EVEN = 0.01
 
 
 def temperature_figure(result: ResultData, time: float | None = None) -> Figure:
