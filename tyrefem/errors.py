@@ -40,9 +40,16 @@ class InputError(ValueError):
     def within(self, *, field: str | None = None, file: str | Path | None = None) -> InputError:
         """The same error, of the same type, with the names of an enclosing field and file."""
         joined = ".".join(part for part in (field, self.field) if part)
+        return self._at(joined or None, self.file or file)
+
+    def without_file(self, file: str | Path) -> InputError:
+        """The same error, of the same type, without this file; an error of another file stays as it is."""
+        return self._at(self.field, None) if self.file is not None and Path(self.file) == Path(file) else self
+
+    def _at(self, field: str | None, file: str | Path | None) -> InputError:
         placed = type(self).__new__(type(self))
         placed.__setstate__(vars(self))
-        InputError.__init__(placed, self.message, field=joined or None, file=self.file or file)
+        InputError.__init__(placed, self.message, field=field, file=file)
         return placed
 
 

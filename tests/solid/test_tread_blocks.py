@@ -167,4 +167,4 @@ def test_a_pattern_cuts_the_tread_alone(changes: dict[str, object], words: str) 
     pattern = {"void": 0.1, "block_length": "20 mm", "source": "test"}
     with pytest.raises(InputError, match=words) as caught:
         tf.study("passenger-205-55r16", {**changes, "section.pattern": pattern})
-    assert caught.value.field == "pattern"
+    assert caught.value.field == "section.pattern"

@@ -61,7 +61,7 @@ YOUNGS_MODULUS = Plausible(
     1.5e5, 2.5e11, "Pa", "three times a gum's shear modulus, steel wire 210 GPa; textbooks, from memory"
 )
 PLY_SHEAR_MODULUS = Plausible(
-    1e6, 5e10, "Pa", "138 MPa for nylon at 35 deg, from rubber alone to steel cords at 45 deg: estimates"
+    1e6, 5e10, "Pa", "138 MPa for nylon at 35 deg, from rubber alone to steel cords at 45 deg: an estimate"
 )
 CORD_MODULUS = Plausible(
     5e8,

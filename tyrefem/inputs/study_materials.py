@@ -107,7 +107,7 @@ def _card(
             try:
                 return like.cards[region].checked(before, data, path), (data, path)
             except InputError as error:
-                raise InputError(error.message, field=error.field) from None
+                raise error.without_file(path) from None
     data, path, _ = library.load("material", reference, folder)
     try:
         return MaterialCard.check(data, path), (data, path)
@@ -115,5 +115,5 @@ def _card(
         if isinstance(reference, Mapping):
             # Where the card alone is right, the error is in the study's changes.
             MaterialCard.check(read_toml(path), path)
-            raise InputError(error.message, field=error.field) from None
+            raise error.without_file(path) from None
         raise

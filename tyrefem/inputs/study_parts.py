@@ -163,7 +163,7 @@ def _section(
         if isinstance(reference, Mapping) and "base" in reference and error.file is not None:
             # Where the card alone is right, the error is in the study's changes.
             load_written(reference["base"], near=folder)
-            error = InputError(error.message, field=error.field)
+            error = error.without_file(error.file)
         raise error if error.file else error.within(field="section", file=file) from None
     _check_sides(built, file)
     return _full(built, card), written
