@@ -222,7 +222,7 @@ def test_a_calibration_is_read_for_its_own_layout(calibration: Calibration, tmp_
     assert known.thresholds == pytest.approx(calibration.thresholds)
     with pytest.raises(InputError, match=r"another layout: its sensors are crown; those of alike are bead"):
         read_calibration(tmp_path, "alike", ["bead"], ["slow"])
-    with pytest.raises(InputError, match=r"another layout: it has 1 runs, alike has 2"):
+    with pytest.raises(InputError, match=r"another layout: it has 1 run, alike has 2"):
         read_calibration(tmp_path, "alike", ["crown"], ["slow", "fast"])
     with pytest.raises(InputError, match=r"--calibrate 1000"):
         read_calibration(tmp_path / "none", "alike", ["crown"], ["slow"])
