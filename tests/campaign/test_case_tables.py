@@ -36,6 +36,12 @@ def test_rows_without_a_filled_cell_and_quoted_comments_are_no_cases(tmp_path: P
     assert read(tmp_path, text) == {"a": {"drive.speed": "20 mph"}}
 
 
+def test_empty_columns_at_the_end_are_none(tmp_path: Path) -> None:
+    assert read(tmp_path, "name,drive.speed [mph],,\na,20,,\nb,30,,\n,,,\n") == read(
+        tmp_path, "name,drive.speed [mph]\na,20\nb,30\n"
+    )
+
+
 @pytest.mark.parametrize("delimiter", [";", "\t"])
 def test_semicolons_and_decimal_commas(tmp_path: Path, delimiter: str) -> None:
     text = "name|drive.speed [mph]|note|section\nslow|12,5|a, b|mine\nfast|35||\n".replace("|", delimiter)
@@ -64,6 +70,8 @@ def test_semicolons_and_decimal_commas(tmp_path: Path, delimiter: str) -> None:
         ("name,section\nAux,b\n", "line 2: 'Aux' can be no folder on Windows"),
         ("name,section\na.,b\n", "line 2: 'a.' can be no folder on Windows"),
         ('name,section\na,"b\n', "line 2: quotes do not match"),
+        ("name,cases\na,b.csv\n", "line 1: column 'cases' would be a table of cases for each case"),
+        ("name,section,\na,b,c\n", "line 2 has 3 cells, the heading 2"),
         (b"name\x00", "is not a text file"),
         (b"PK\x03\x04", "workbook or archive"),
     ],
