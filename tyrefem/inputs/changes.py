@@ -11,6 +11,7 @@ from tyrefem.errors import InputError, nearest
 from tyrefem.inputs.deviations import has_arbitrary_zero
 from tyrefem.inputs.drive_table import EXCLUSIVE_KEYS
 from tyrefem.quantity import KELVIN, amount_parts, parse, written
+from tyrefem.quantity.factors import FACTORS
 from tyrefem.sizes import completed_materials, is_size, with_numbers
 
 #: Tables whose text value names a card: a change of a value below it overrides the card's value.
@@ -305,3 +306,16 @@ def check_factor(value: Any) -> None:
         unit, shown = (amount_parts(value) or ("", ""))[1], repr(value)
     if has_arbitrary_zero(unit):
         raise InputError(f"{shown} is a temperature: a share of it means nothing; give values, or an sd like '2 K'")
+
+
+def check_number(value: Any) -> None:
+    """Raises InputError for a text that only begins with a number, such as a title.
+
+    >>> check_number("20 mph")
+    """
+    unit = (amount_parts(value) or ("", ""))[1]
+    if unit and not any(unit in usual for usual in FACTORS.values()):
+        try:
+            parse(value, unit)
+        except InputError:
+            raise InputError(f"{value!r:.80} is not a number that can be scaled") from None
