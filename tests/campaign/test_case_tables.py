@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
+import openpyxl
 import pytest
 
 import tyrefem as tf
@@ -81,6 +83,28 @@ def test_mistakes_are_named(tmp_path: Path, text: str | bytes, words: str) -> No
         read(tmp_path, text)
     assert words in str(error.value)
     assert "cases.csv" in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("cell", "words"),
+    [
+        ("#DIV/0!", "cell B3: #DIV/0! is the error of a formula"),
+        ("=A2*2", "cell B3: a formula without its value; open and save the workbook"),
+    ],
+)
+def test_a_formula_without_a_value_is_not_the_value_of_the_study(tmp_path: Path, cell: str, words: str) -> None:
+    """An empty cell keeps the study's value: a failed formula would do so unseen."""
+    book = openpyxl.Workbook()
+    for row in (["name", "drive.speed [mph]"], ["a", 20], ["b", cell]):
+        book.active.append(row)
+    book.create_sheet("notes").append(["#REF!"])
+    book["notes"].sheet_state = "hidden"
+    book.save(tmp_path / "cases.xlsx")
+    with pytest.raises(InputError, match=re.escape(f"cases.xlsx: {words}")):
+        read_cases(tmp_path / "cases.xlsx")
+    book.active["B3"] = 30
+    book.save(tmp_path / "cases.xlsx")
+    assert [case.changes["drive.speed"] for case in read_cases(tmp_path / "cases.xlsx")] == ["20 mph", "30 mph"]
 
 
 @pytest.mark.parametrize(

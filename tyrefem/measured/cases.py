@@ -11,6 +11,7 @@ from typing import Any
 from tyrefem.errors import InputError
 from tyrefem.measured.heading import is_time, parts
 from tyrefem.measured.lines import DELIMITERS, LONGEST_PREAMBLE, decode, texts
+from tyrefem.measured.workbook import check_formulas
 from tyrefem.output.device_names import is_device
 
 _HEADING = re.compile(r"^\s*([^\[\]]+?)\s*(?:\[([^\[\]]*)\])?\s*$")
@@ -39,7 +40,8 @@ def read_cases(path: Path) -> tuple[Case, ...]:
 
     Raises
     ------
-    InputError : unreadable, no ``name`` column, a row of another length, a missing or repeated name.
+    InputError : unreadable, no ``name`` column, a row of another length, a missing or repeated name, a cell of an
+        Excel workbook whose formula has no value.
 
     >>> import tempfile
     >>> file = Path(tempfile.mkdtemp()) / "cases.csv"
@@ -48,6 +50,8 @@ def read_cases(path: Path) -> tuple[Case, ...]:
     [{'drive.speed': '20 mph'}, {'drive.speed': '35 mph'}]
     """
     lines = _content(decode(path))
+    # An empty cell keeps the study's value: one whose formula has failed would be taken for that.
+    check_formulas(path.read_bytes(), path)
     if len(lines) < 2:
         raise InputError("needs a heading and at least one case", file=path)
     delimiter = _delimiter(lines[0][1])
