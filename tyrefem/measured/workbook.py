@@ -99,8 +99,8 @@ def _visible_parts(archive: zipfile.ZipFile) -> list[str]:
     shown = [
         sheet for sheet in book.iter() if sheet.tag.endswith("}sheet") and sheet.get("state", "visible") == "visible"
     ]
-    found = [next(targets[value] for key, value in sheet.items() if key.endswith("}id")) for sheet in shown]
-    return [target[1:] if target.startswith("/") else f"xl/{target}" for target in found]
+    files = [next(targets[value] for key, value in sheet.items() if key.endswith("}id")) for sheet in shown]
+    return [target[1:] if target.startswith("/") else f"xl/{target}" for target in files]
 
 
 def _attribute(attributes: str, name: str) -> str:

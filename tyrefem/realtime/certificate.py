@@ -203,8 +203,8 @@ def export(
     report("tables", 0, 1)
     try:
         training = _Training(study, box, horizon, settings, report, scheduler)
-    except InputError as error:
-        raise _of_box(error, ranges or {}) from None
+    except InputError as refused:
+        raise _of_box(refused, ranges or {}) from None
     report("tables", 1, 1)
     seed, count = settings.seed, settings.fresh
     cube = np.random.default_rng(seed).random((settings.rounds * count, 5))
