@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
+import openpyxl
 import pytest
 
 import tyrefem as tf
@@ -36,6 +38,12 @@ def test_rows_without_a_filled_cell_and_quoted_comments_are_no_cases(tmp_path: P
     assert read(tmp_path, text) == {"a": {"drive.speed": "20 mph"}}
 
 
+def test_empty_columns_at_the_end_are_none(tmp_path: Path) -> None:
+    assert read(tmp_path, "name,drive.speed [mph],,\na,20,,\nb,30,,\n,,,\n") == read(
+        tmp_path, "name,drive.speed [mph]\na,20\nb,30\n"
+    )
+
+
 @pytest.mark.parametrize("delimiter", [";", "\t"])
 def test_semicolons_and_decimal_commas(tmp_path: Path, delimiter: str) -> None:
     text = "name|drive.speed [mph]|note|section\nslow|12,5|a, b|mine\nfast|35||\n".replace("|", delimiter)
@@ -64,6 +72,8 @@ def test_semicolons_and_decimal_commas(tmp_path: Path, delimiter: str) -> None:
         ("name,section\nAux,b\n", "line 2: 'Aux' can be no folder on Windows"),
         ("name,section\na.,b\n", "line 2: 'a.' can be no folder on Windows"),
         ('name,section\na,"b\n', "line 2: quotes do not match"),
+        ("name,cases\na,b.csv\n", "line 1: column 'cases' would be a table of cases for each case"),
+        ("name,section,\na,b,c\n", "line 2 has 3 cells, the heading 2"),
         (b"name\x00", "is not a text file"),
         (b"PK\x03\x04", "workbook or archive"),
     ],
@@ -73,6 +83,28 @@ def test_mistakes_are_named(tmp_path: Path, text: str | bytes, words: str) -> No
         read(tmp_path, text)
     assert words in str(error.value)
     assert "cases.csv" in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("cell", "words"),
+    [
+        ("#DIV/0!", "cell B3: #DIV/0! is the error of a formula"),
+        ("=A2*2", "cell B3: a formula without its value; open and save the workbook"),
+    ],
+)
+def test_a_formula_without_a_value_is_not_the_value_of_the_study(tmp_path: Path, cell: str, words: str) -> None:
+    """An empty cell keeps the study's value: a failed formula would do so unseen."""
+    book = openpyxl.Workbook()
+    for row in (["name", "drive.speed [mph]"], ["a", 20], ["b", cell]):
+        book.active.append(row)
+    book.create_sheet("notes").append(["#REF!"])
+    book["notes"].sheet_state = "hidden"
+    book.save(tmp_path / "cases.xlsx")
+    with pytest.raises(InputError, match=re.escape(f"cases.xlsx: {words}")):
+        read_cases(tmp_path / "cases.xlsx")
+    book.active["B3"] = 30
+    book.save(tmp_path / "cases.xlsx")
+    assert [case.changes["drive.speed"] for case in read_cases(tmp_path / "cases.xlsx")] == ["20 mph", "30 mph"]
 
 
 @pytest.mark.parametrize(

@@ -173,6 +173,7 @@ def test_a_folder_of_every_kind_of_file_is_checked(here: Path, refused: Callable
             "explore.drive: a variant with drive.sped",
         ),
         ('[explore]\nvary = { "drive.speed" = nan }', "explore.vary: must be a list of values or a tuple"),
+        ("[explore]\nlimits = { hottest_degC = 3 }", "explore.limits.hottest_degC: must be a table of keys, not 3"),
         ('[explore]\naxes = ["drive.speed", "drive.laod"]', "explore.axes: 'drive.laod' does not vary; did you mean"),
         (
             '[plan]\nlimits = { "drive.phases.x.speed" = ["1 mph", "2 mph"] }',

@@ -92,6 +92,26 @@ def test_new_refuses_what_is_no_name(refused: Callable[..., str], name: str) -> 
     assert "is not allowed as a card's name" in refused("new", "study", "--", name)
 
 
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["section", "CON"], "name: 'CON' can be no file on Windows"),
+        (["study", "x."], "name: 'x.' can be no file on Windows"),
+        (["study", "x", "--from", ""], "--from: is empty"),
+        (["study", "205/60R15", "--from", "passenger-205-55r16"], "--from: a size is drawn, not copied"),
+        (["section", "205/60R15", "--rim", "-6 in"], "--rim: -6 in is outside what is possible here: at least 0 in"),
+        (
+            ["section", "205/60R15", "--rim", "6 in", "--set", "rim_width=7 in"],
+            "'rim_width' is given twice beside",
+        ),
+        (["section", "205/60R15", "--set", "plies=1", "--set", "parameters.plies=2"], "--set: 'plies' is given twice"),
+        (["section", "205/60R15", "--set", "plies=1", "--set", "plies=2"], "--set: 'plies' has two values, 1 and 2"),
+    ],
+)
+def test_new_refuses_options_that_contradict(refused: Callable[..., str], words: list[str], message: str) -> None:
+    assert message in refused("new", *words)
+
+
 def test_new_of_an_unknown_kind_or_card(refused: Callable[..., str]) -> None:
     assert "did you mean 'material'?" in refused("new", "materiall", "x")
     assert "no section named 'nasa'" in refused("new", "section", "x", "--from", "nasa")

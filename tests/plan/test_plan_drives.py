@@ -70,6 +70,7 @@ def test_longer_runs_cost_more_with_a_cost_per_hour() -> None:
         ({"limits": {"drive.speed": "30 mph"}}, "must be a lower and an upper limit"),
         ({"limits": {"drive.speed": ["10 kN", "30 kN"]}}, r"plan\.limits\.drive\.speed: 'kN' is not a unit"),
         ({"limits": {"drive.sped": ["1 m/s", "2 m/s"]}}, r"'drive\.sped' is no quantity.*did you mean 'drive\.speed'"),
+        ({"limits": {"drive": {"speed": ["1 m/s", "2 m/s"]}}}, r"plan\.limits\.drive: write the dotted name in quotes"),
         ({"limits": {"mesh.size": ["1 mm", "2 mm"]}}, r"'mesh\.size' is no quantity of the drive"),
         ({"limit": {}}, "unknown key 'limit'; did you mean 'limits'"),
         ({"run_cost": 0}, r"plan\.run_cost: 0 is out of range"),

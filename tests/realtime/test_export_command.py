@@ -31,7 +31,14 @@ STUDY = "nasa-22x5.5-8pr"
         (["--speed", "0 mph:2000 mph"], "--speed: 2000 mph: '894.08 m/s' is out of range: must be at most 400 m/s"),
         (["--load", "-1 kN:10 kN"], "tyrefem: --load: must be positive, not -1 kN to 10 kN"),
         (["--pressure", "20 degC:30 degC"], "pressure"),
-        (["--load", "10 kN:200 kN", "--set", "mesh.size=12 mm"], "deflects the tyre"),
+        (
+            ["--load", "10 kN:200 kN", "--set", "mesh.size=12 mm"],
+            "tyrefem: --load: 1.05e+05 N at 572.3 kPa deflects",
+        ),
+        (
+            ["--pressure", "0 bar:1 bar", "--set", "mesh.size=12 mm"],
+            "tyrefem: --pressure: 1.051e+04 N at 50 kPa: a",
+        ),
         (["--tolerance", "0 K"], "must be positive"),
         (["--set", "mechanics.feedback.pressure=true"], "feedback"),
         (["--set", "drive.slip_ratio=0.1"], "slip"),
@@ -56,6 +63,13 @@ def test_the_box_without_being_asked():
         box_of(study, {"sped": (0.0, 1.0)})
     with pytest.raises(InputError, match="deflection"):
         box_of(study.replace({"drive.deflection": "1 in"}))
+    assert box_of(study, {"load": np.array([1e4, 1.2e4])}).ranges["load"] == (1e4, 1.2e4)
+
+
+@pytest.mark.parametrize("given", [None, (None, 3.0), ([1.0], [2.0]), (True, 5e3), {"from": 1e4, "to": 2e4}])
+def test_what_is_no_range_names_its_input(given):
+    with pytest.raises(InputError, match=r"^load: "):
+        box_of(tyrefem.study(STUDY), {"load": given})
 
 
 @pytest.mark.parametrize("drive", [{}, {"drive.camber": "2 deg"}, {"drive.torque": "-100 N m"}])

@@ -125,6 +125,8 @@ def test_outside_the_box_is_an_error_or_the_edge(slave):
     slave.setReal([0], [40.0])
     with pytest.raises(Exception, match="fmi2DoStep"):
         slave.doStep(0.0, 1.0)
+    with pytest.raises(Exception, match="fmi2SetReal"):
+        slave.setReal([5], [float("nan")])
     slave.setBoolean([6], [True])
     slave.doStep(0.0, 1.0)
     assert slave.getInteger([7]) == [1]

@@ -140,6 +140,8 @@ def test_inputs_outside_the_box_are_refused_or_moved_to_its_edge(exported):
         RealTimeTyre(exported.file, clamp=True).step(1.0, Inputs(5.0, float("nan"), 560e3, 20.0))
     with pytest.raises(ValueError, match="step"):
         tyre.step(0.0, WARM)
+    with pytest.raises(ValueError, match="a temperature must be a number of degC, not nan"):
+        tyre.reset(float("nan"))
     soft, edge = RealTimeTyre(exported.file, clamp=True), RealTimeTyre(exported.file)
     moved = soft.step(1.0, Inputs(40.0, 12e3, 560e3, 20.0, 30.0))
     np.testing.assert_array_equal(moved, edge.step(1.0, Inputs(12.0, 12e3, 560e3, 20.0, 30.0)))

@@ -178,7 +178,7 @@ def test_sensors_stay_in_their_layer_at_their_share(here: Path) -> None:
         (["225-45-17", "--from", "passenger-205-55r16"], "is no tyre size; did you mean '225/45R17'"),
         (["225/45R17", "--from", "pasenger-205-55r16"], "did you mean 'passenger-205-55r16'"),
         (["225/45R17", "--set", "tread_guage=7 mm"], "no number 'tread_guage'; did you mean 'tread_gauge'"),
-        (["225/45R17", "--rim", "3 in"], "rim_width: 3 in is too narrow"),
+        (["225/45R17", "--rim", "3 in"], "--rim: 3 in is too narrow"),
     ],
 )
 def test_what_does_not_fit_is_one_error_and_nothing_is_written(
@@ -210,6 +210,14 @@ def test_a_line_break_in_an_option_leaves_a_file_that_can_be_read(kind: str, her
     assert main(["new", kind, "205/60R15\n", "--set", "crown_radius=700 mm\n"]) == 0
     file = next((here / "geometry").iterdir())
     assert tf.geometry.load(str(file)).outer_diameter == pytest.approx(0.627, abs=1e-3)
+
+
+def test_what_no_rule_has_is_in_the_file_of_a_section(here: Path) -> None:
+    words = ["--set", "inner_volume=30 l", "--set", "thickness_scale={sidewall=1.2}"]
+    assert main(["new", "section", "205/60R15", "--out", "mine.toml", *words]) == 0
+    mine, plain = tf.geometry.load(str(here / "mine.toml")), tf.geometry.load("205/60R15")
+    assert mine.inner_volume == pytest.approx(0.03)
+    assert mine.overall_width > plain.overall_width
 
 
 def test_the_answer_as_json(here: Path, capsys: pytest.CaptureFixture[str]) -> None:

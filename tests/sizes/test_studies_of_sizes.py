@@ -9,7 +9,8 @@ import pytest
 import tyrefem as tf
 from tyrefem.api import Study
 from tyrefem.errors import InputError
-from tyrefem.inputs.changes import all_changed, value_at
+from tyrefem.inputs.changes import all_changed, check_compatible, value_at
+from tyrefem.sizes.section import drawn_of
 from tyrefem.variants.task import bundle
 
 pytestmark = pytest.mark.fast
@@ -56,6 +57,18 @@ def test_dotted_names_reach_the_rules(sized: Study) -> None:
     stiffer = sized.replace({"materials.belt-1.cords.modulus": "180 GPa"})
     assert stiffer.materials["belt-1"].cords.modulus == 1.8e11
     assert stiffer.materials["belt-1"].cords.angle_radius == sized.materials["belt-1"].cords.angle_radius
+
+
+def test_both_names_of_the_rim_set_the_same_number(sized: Study) -> None:
+    for first in ("section.rim_width", "section.parameters.rim_width"):
+        for second in ("section.rim_width", "section.parameters.rim_width"):
+            study = sized.replace({first: "6 in"}).replace({second: "6.5 in"})
+            assert drawn_of(study.data["section"]).rules["rim_width"].text == "6.5 in"
+    both = {"size": "205/60R15", "rim_width": "6 in", "parameters": {"rim_width": "7 in"}}
+    with pytest.raises(InputError, match=r"section\.parameters\.rim_width: 'rim_width' of the same table"):
+        sized.replace({"section": both})
+    with pytest.raises(InputError, match=r"'section\.rim_width' sets it too"):
+        check_compatible(sized.data, {"section.rim_width": "6 in", "section.parameters.rim_width": "7 in"})
 
 
 def test_numbers_of_the_rules_can_be_varied_by_factors(sized: Study) -> None:

@@ -222,6 +222,8 @@ def test_a_tir_file_has_every_section_once(fit):
         ("ANGLE = 'degrees'\nFITTYP = 61\n", "line 1: must be 'radians', not 'degrees'"),
         ("LENGTH = mm\nFITTYP = 61\n", "line 1: must be 'meter', not 'mm'"),
         ('FORCE = "kN"\nFITTYP = 61\n', "line 1: must be 'newton', not 'kn'"),
+        ("FITTYP = 61\nPCY1 = 1.3\nPCY1 = 1.4\n", "PCY1: line 3: is 1.4 here, 1.3 above"),
+        ("FITTYP = 61\nLMUY = 'large'\n", "line 2: ''large'' is not a number"),
     ],
 )
 def test_a_wrong_tir_file_is_one_clear_error(text, message, tmp_path):
@@ -231,6 +233,16 @@ def test_a_wrong_tir_file_is_one_clear_error(text, message, tmp_path):
         read_tir(path)
     with pytest.raises(InputError, match="cannot be read"):
         read_tir(tmp_path / "none.tir")
+
+
+def test_numbers_in_quotes_are_numbers(tmp_path):
+    path = tmp_path / "quoted.tir"
+    path.write_text(
+        "FITTYP = 61\nFNOMIN = '4e3'\nNOMPRES = 2e5\nUNLOADED_RADIUS = 0.3\nPCY1 = '1.3'\nTYRESIDE = 'LEFT'\n"
+    )
+    formula = read_tir(str(path))
+    assert formula.coefficients == {"PCY1": 1.3}
+    assert formula.nominal_load == 4e3
 
 
 def test_wrong_points_are_one_clear_error():

@@ -101,7 +101,9 @@ def settings(pairs: list[str] | None) -> dict[str, Any]:
             parsed = tomllib.loads(f"value = {text}")
         except (ValueError, RecursionError):  # beside errors of TOML: an endless number, or endless brackets
             parsed = {}
-        changes[key.strip()] = parsed["value"] if len(parsed) == 1 else text
+        value = parsed["value"] if len(parsed) == 1 else text
+        if changes.setdefault(key.strip(), value) != value:
+            raise InputError(f"'{key.strip()}' has two values, {changes[key.strip()]} and {value}", field="--set")
     return changes
 
 

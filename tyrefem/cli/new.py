@@ -5,7 +5,8 @@ from __future__ import annotations
 import filecmp
 import os
 import re
-from collections.abc import Iterable
+from collections.abc import Container, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -17,7 +18,10 @@ from tyrefem.cli.shell import answer_with, say
 from tyrefem.cli.show import complete_names
 from tyrefem.errors import InputError, nearest
 from tyrefem.interruption import interruption_delayed
+from tyrefem.output.device_names import is_device
 
+#: Number of a size -> its option.
+OPTIONS = {"rim_width": "--rim", "load": "--load", "pressure": "--pressure"}
 DEFAULTS = {"study": "nasa-22x5.5-8pr", "section": "nasa-22x5.5-8pr", "material": "nasa-tread"}
 
 
@@ -73,24 +77,25 @@ def new(
         raise InputError(f"no kind '{kind}'{nearest(kind, [*DEFAULTS, 'tyre', *PLUGINS])}")
     if not name:
         raise InputError("is missing: the new card's name; an empty one is not allowed as a card's name", field="name")
-    of_size = {"rim_width": rim, "load": load, "pressure": pressure, **settings(changes)}
-    of_size = {key: value for key, value in of_size.items() if value is not None}
-    if kind == "tyre":
-        from tyrefem.cli.new_tyre import new_tyre
+    if copy_of is not None and not copy_of.strip():
+        raise InputError("is empty; name a card, or leave the option out", field="--from")
+    options = {"rim_width": rim, "load": load, "pressure": pressure}
+    given = {key: value for key, value in options.items() if value is not None}
+    of_size = _numbers(given, settings(changes))
+    with _naming_options(given):
+        if kind == "tyre":
+            from tyrefem.cli.new_tyre import new_tyre
 
-        new_tyre(name, copy_of, of_size, out, force=force)
-        return
-    if kind != "material" and copy_of is None and looks_like_size(name):
-        from tyrefem.cli.new_size import new_size
+            new_tyre(name, copy_of, of_size, out, force=force)
+            return
+        if kind != "material" and copy_of is None and looks_like_size(name):
+            from tyrefem.cli.new_size import new_size
 
-        new_size(kind, name, of_size, out, force=force)
-        return
+            new_size(kind, name, of_size, out, force=force)
+            return
     if of_size:
         raise InputError("--rim, --load, --pressure and --set go with a tyre's size such as 205/60R15", field="name")
-    if not re.fullmatch(r"\w[\w.-]*", name) or name.lower().endswith(".toml"):
-        raise InputError(
-            f"'{name}' is not allowed as a card's name; allowed: letters, digits, . _ -, without '.toml' at the end"
-        )
+    _check_name(kind, name, copy_of)
     source = library.find(kind, copy_of or DEFAULTS[kind])
     folder = Path(library.FOLDERS[kind])
     target = folder / name / "study.toml" if kind == "study" else folder / f"{name}.toml"
@@ -116,6 +121,52 @@ def new(
     if note:
         say(f"note: {note}")
     say(f"edit it, then: tyrefem check {as_argument(target)}")
+
+
+def _numbers(given: Mapping[str, str], changes: Mapping[str, Any]) -> dict[str, Any]:
+    """The numbers of a size by their names in its rules, of options and of ``--set``.
+
+    Raises
+    ------
+    InputError : a number is given twice.
+
+    >>> _numbers({"rim_width": "6 in"}, {"section.parameters.plies": 2})
+    {'rim_width': '6 in', 'plies': 2}
+    """
+    numbers: dict[str, Any] = dict(given)
+    for key, value in changes.items():
+        name = key.removeprefix("section.").removeprefix("parameters.")
+        if name in numbers:
+            beside = f" beside {OPTIONS[name]}" if name in given else ""
+            raise InputError(f"'{name}' is given twice{beside}", field="--set")
+        numbers[name] = value
+    return numbers
+
+
+@contextmanager
+def _naming_options(given: Container[str]) -> Iterator[None]:
+    """Name the option, not the number, in an error of what an option has given."""
+    try:
+        yield
+    except InputError as error:
+        if error.file is None and error.field in OPTIONS and error.field in given:
+            raise InputError(error.message, field=OPTIONS[error.field]) from None
+        raise
+
+
+def _check_name(kind: str, name: str, copy_of: str | None) -> None:
+    """Raise `InputError` for a name that no card can have."""
+    from tyrefem.sizes import looks_like_size
+
+    if not re.fullmatch(r"\w[\w.-]*", name) or name.lower().endswith(".toml"):
+        if copy_of is not None and kind != "material" and looks_like_size(name):
+            message = f"a size is drawn, not copied; scaled from a study: tyrefem new tyre '{name}' --from STUDY"
+            raise InputError(message, field="--from")
+        raise InputError(
+            f"'{name}' is not allowed as a card's name; allowed: letters, digits, . _ -, without '.toml' at the end"
+        )
+    if is_device(name) or name.endswith("."):
+        raise InputError(f"'{name}' can be no file on Windows; give the card another name", field="name")
 
 
 def _copies(source: Path, target: Path, names: Iterable[Path], *, force: bool) -> dict[Path, Path]:

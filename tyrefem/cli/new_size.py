@@ -6,6 +6,7 @@ import os
 import re
 import shlex
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -32,15 +33,11 @@ def new_size(kind: str, size: str, numbers: Mapping[str, Any], out: Path | None,
     from tyrefem.output.file import results_file
     from tyrefem.schemas.line import schema_line
     from tyrefem.sizes import drawn_of
-    from tyrefem.sizes.section import NUMBERS
+    from tyrefem.sizes.section import NUMBERS, section_of_size
     from tyrefem.sizes.text import section_text, study_text
 
     of_use = {key: value for key, value in numbers.items() if key in NUMBERS}
-    named = {
-        key.removeprefix("section.").removeprefix("parameters."): value
-        for key, value in numbers.items()
-        if key not in NUMBERS
-    }
+    named = {key: value for key, value in numbers.items() if key not in NUMBERS}
     reference = {"size": size, **of_use, **({"parameters": named} if named else {})}
     with progress(f"{size}: drawing"):
         drawn = drawn_of(reference)
@@ -59,7 +56,9 @@ def new_size(kind: str, size: str, numbers: Mapping[str, Any], out: Path | None,
     # In one line, as it stands in a comment of the file.
     command = " ".join(f"tyrefem new {kind} {shlex.quote(size)} {options}".split())
     if kind == "section":
-        text = section_text(drawn, command)
+        data, over = section_of_size(reference)
+        parameters = {**data["parameters"], **over.get("parameters", {})}
+        text = section_text(replace(drawn, data={**data, "parameters": parameters}), command)
     else:
         text = study_text(drawn, reference, SPEED, named_places(section))
     with results_file(target, (".toml",), force=force), atomic_path(target) as temporary:

@@ -46,8 +46,7 @@ def new_tyre(size: str, source: str | None, numbers: Mapping[str, Any], out: Pat
     options = "".join(f" --set {key}={shlex.quote(str(value))}" for key, value in numbers.items())
     command = f"tyrefem new tyre {shlex.quote(size)} --from {shlex.quote(str(source or SHIPPED[kind]))}{options}"
     command = " ".join(command.split())  # in one line, as it stands in a comment of both files
-    named = {key.removeprefix("section.").removeprefix("parameters."): value for key, value in numbers.items()}
-    tyre = scaled_tyre(first, size, named, command)
+    tyre = scaled_tyre(first, size, numbers, command)
     folder = out or Path()
     files = {
         folder / library.FOLDERS["section"] / f"{tyre.name}.toml": ("section", tyre.section),

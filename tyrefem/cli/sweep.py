@@ -198,7 +198,7 @@ def sweep(
     try:
         how = Execution(restart=restart, reduced=reduced, tolerance=parse(tolerance, "delta_degC"))
     except InputError as error:
-        raise error if error.field else error.within(field="--tolerance") from None
+        raise InputError(error.message, field=f"--{error.field or 'tolerance'}") from None
     name, wanted = questions(study, given, settings(changes), case)
     refuse_unknown(wanted.plan, vtk or ())
     warn(wanted.warnings)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import re
 from collections.abc import Container, Iterator
@@ -152,9 +153,12 @@ def _bound(text: str, flag: str) -> tuple[str, str, float]:
             field=flag,
         )
     try:
-        return match[1], match[2], float(match[3])
+        value = float(match[3])
     except ValueError:
-        raise InputError(f"'{match[3]}' is not a number", field=flag) from None
+        value = math.nan
+    if not math.isfinite(value):
+        raise InputError(f"'{match[3]}' is not a number", field=flag)
+    return match[1], match[2], value
 
 
 def _limits(texts: list[str]) -> dict[str, dict[str, float]]:

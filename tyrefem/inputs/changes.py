@@ -11,7 +11,9 @@ from tyrefem.errors import InputError, nearest
 from tyrefem.inputs.deviations import has_arbitrary_zero
 from tyrefem.inputs.drive_table import EXCLUSIVE_KEYS
 from tyrefem.quantity import KELVIN, amount_parts, parse, written
+from tyrefem.quantity.factors import FACTORS
 from tyrefem.sizes import completed_materials, is_size, with_numbers
+from tyrefem.sizes.section import NUMBERS
 
 #: Tables whose text value names a card: a change of a value below it overrides the card's value.
 _REFERENCES = {"section": "section", "materials.*": "material"}
@@ -67,6 +69,16 @@ def _change(data: dict[str, Any], key: str, parts: list[str], value: Any) -> Non
     else:
         place[last] = value
         _drop_exclusive(parts, place)
+        _drop_other_name(data, parts)
+
+
+def _drop_other_name(data: Mapping[str, Any], parts: list[str]) -> None:
+    """Leave out the other name of a number of a size, which stands in the table or in its ``parameters``."""
+    section = data.get("section")
+    if parts[0] == "section" and parts[-1] in NUMBERS and isinstance(section, dict) and is_size(section):
+        other = section.get("parameters") if len(parts) == 2 else section
+        if isinstance(other, dict) and parts[1:-1] in ([], ["parameters"]):
+            other.pop(parts[-1], None)
 
 
 def _as_table(data: dict[str, Any], parts: list[str]) -> None:
@@ -145,6 +157,8 @@ def _parts(data: Mapping[str, Any], key: str) -> list[str]:
         return ["uncertainty", ".".join(parts[1:])]
     if parts[:2] == ["section", "layers"] and parts[3:] == ["angle"]:
         return ["materials", _cord_region(data, parts[2], key), "cords", "angle"]
+    if parts == ["section", "parameters", "rim_width"] and is_size(data.get("section")):
+        return ["section", "rim_width"]
     if parts[0] == "section" and len(parts) >= 2 and parts[1] != "base":
         return [*_section_parts(parts[1]), *parts[2:]]
     return parts
@@ -305,3 +319,16 @@ def check_factor(value: Any) -> None:
         unit, shown = (amount_parts(value) or ("", ""))[1], repr(value)
     if has_arbitrary_zero(unit):
         raise InputError(f"{shown} is a temperature: a share of it means nothing; give values, or an sd like '2 K'")
+
+
+def check_number(value: Any) -> None:
+    """Raises InputError for a text that only begins with a number, such as a title.
+
+    >>> check_number("20 mph")
+    """
+    unit = (amount_parts(value) or ("", ""))[1]
+    if unit and not any(unit in usual for usual in FACTORS.values()):
+        try:
+            parse(value, unit)
+        except InputError:
+            raise InputError(f"{value!r:.80} is not a number that can be scaled") from None

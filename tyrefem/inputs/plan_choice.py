@@ -46,6 +46,8 @@ def _limits(value: Any) -> Limits:
         raise InputError("must be a table such as { \"drive.speed\" = ['10 mph', '40 mph'] }")
     limits: Limits = {}
     for key, pair in value.items():
+        if isinstance(pair, Mapping):
+            raise InputError("write the dotted name in quotes: \"drive.speed\" = ['10 mph', '40 mph']", field=str(key))
         table, _, rest = str(key).partition(".")
         name = rest.rpartition(".")[2]
         if table != "drive" or name not in UNITS:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from tyrefem.cards import Card
 from tyrefem.errors import InputError
-from tyrefem.inputs.changes import by_places, canonical, check_factor, check_used, scaled, value_at
+from tyrefem.inputs.changes import by_places, canonical, check_factor, check_number, check_used, scaled, value_at
 from tyrefem.inputs.deviations import share_of
 from tyrefem.materials.reads import STIFFNESS, tables_read
 from tyrefem.quantity import amount_parts
@@ -179,6 +179,7 @@ def uncertain_at(study: StudyOfCards, key: str) -> UncertainNumber | None:
 def _named(study: StudyOfCards, key: str, sd: float) -> UncertainNumber:
     """The number at a dotted name, with the other regions of the same card."""
     value = value_at(study.data, key, study.folder)
+    check_number(value)
     # A layer's angle is that of the cords of its region's card.
     parts = canonical(study.data, key).split(".")
     if parts[0] != "materials" or len(parts) < 4:

@@ -11,6 +11,7 @@ from typing import Any
 from tyrefem.errors import InputError
 from tyrefem.measured.heading import is_time, parts
 from tyrefem.measured.lines import DELIMITERS, LONGEST_PREAMBLE, decode, texts
+from tyrefem.measured.workbook import check_formulas
 from tyrefem.output.device_names import is_device
 
 _HEADING = re.compile(r"^\s*([^\[\]]+?)\s*(?:\[([^\[\]]*)\])?\s*$")
@@ -33,12 +34,14 @@ def read_cases(path: Path) -> tuple[Case, ...]:
     """The cases of a CSV file or of a workbook with one sheet.
 
     The heading names each column: ``name``, optionally ``note``, and dotted names such as ``drive.load [lbf]``, whose
-    unit is added to every number. Lines that begin with ``#`` are comments; an empty cell keeps the study's value.
+    unit is added to every number. Lines that begin with ``#`` are comments; an empty cell keeps the study's value;
+    empty columns at its end are none.
     Cells are separated by commas, semicolons or tabs; without commas between them a number may have a decimal comma.
 
     Raises
     ------
-    InputError : unreadable, no ``name`` column, a row of another length, a missing or repeated name.
+    InputError : unreadable, no ``name`` column, a row of another length, a missing or repeated name, a cell of an
+        Excel workbook whose formula has no value.
 
     >>> import tempfile
     >>> file = Path(tempfile.mkdtemp()) / "cases.csv"
@@ -47,10 +50,15 @@ def read_cases(path: Path) -> tuple[Case, ...]:
     [{'drive.speed': '20 mph'}, {'drive.speed': '35 mph'}]
     """
     lines = _content(decode(path))
+    # An empty cell keeps the study's value: one whose formula has failed would be taken for that.
+    check_formulas(path.read_bytes(), path)
     if len(lines) < 2:
         raise InputError("needs a heading and at least one case", file=path)
     delimiter = _delimiter(lines[0][1])
     rows = [(number, _cells(line, number, path, delimiter)) for number, line in lines]
+    width = max((place for place, cell in enumerate(rows[0][1], 1) if cell.strip()), default=0)
+    whole = len(rows[0][1])
+    rows = [(number, _without_empty(cells, width) if len(cells) == whole else cells) for number, cells in rows]
     columns = [_heading(cell, path) for cell in rows[0][1]]
     names = [name for name, _ in columns]
     if "name" not in names:
@@ -58,6 +66,8 @@ def read_cases(path: Path) -> tuple[Case, ...]:
     twice = next((name for name in names if names.count(name) > 1), None)
     if twice is not None:
         raise InputError(f"line {rows[0][0]}: the heading has column '{twice}' twice", file=path)
+    if "cases" in names:
+        raise InputError(f"line {rows[0][0]}: column 'cases' would be a table of cases for each case", file=path)
     cases = [_case(number, cells, columns, path) for number, cells in rows[1:]]
     seen: dict[str, Case] = {}
     for case in cases:
@@ -113,6 +123,11 @@ def _cells(line: str, number: int, path: Path, delimiter: str) -> list[str]:
         return cells if delimiter == "," else [_DECIMAL_COMMA.sub(r"\1.\2", cell) for cell in cells]
     except csv.Error as error:
         raise InputError(f"line {number}: quotes do not match ({error})", file=path) from None
+
+
+def _without_empty(cells: list[str], width: int) -> list[str]:
+    """A row without empty cells behind the last column, which spreadsheets write."""
+    return cells if any(cell.strip() for cell in cells[width:]) else cells[:width]
 
 
 def _heading(cell: str, path: Path) -> tuple[str, str]:

@@ -9,6 +9,7 @@ import zipfile
 from datetime import date, datetime, time, timedelta
 from pathlib import Path
 from typing import IO
+from xml.etree import ElementTree
 
 from tyrefem.errors import InputError
 from tyrefem.estimates.work import check_memory
@@ -24,6 +25,12 @@ CELL = 80.0
 #: File of a sheet in an Excel workbook; a cell in it that is not empty: its column and its row.
 _SHEET = re.compile(r"(?:.*/)?worksheets/[^/]+\.xml")
 _FILLED = re.compile(rb'<(?:\w+:)?c\b[^<>]*?\sr="([A-Z]{1,3})(\d{1,7})"[^<>]*(?<!/)>\s*<(?!/)')
+#: Files of an Excel workbook with the names of its sheets, and with the files of the sheets.
+_BOOK = ("workbook.xml", "_rels/workbook.xml.rels")
+#: A cell: its attributes, and what is in it.
+_CELL = re.compile(r"<(?:\w+:)?c\b([^<>]*[^<>/])>(.*?)</(?:\w+:)?c>", re.DOTALL)
+_VALUE = re.compile(r"<(?:\w+:)?v\b[^<>]*>([^<]+)")
+_FORMULA = re.compile(r"<(?:\w+:)?f\b")
 _Cell = float | str | bool | date | datetime | time | timedelta
 
 
@@ -61,6 +68,44 @@ def sheet_texts(data: bytes, path: Path) -> dict[str, str]:
     if not texts:
         raise InputError("is a workbook without a filled and visible sheet", file=path)
     return texts
+
+
+def check_formulas(data: bytes, path: Path) -> None:
+    """Check that the visible sheets of an Excel workbook have a value for each formula; other formats are not checked.
+
+    Raises
+    ------
+    InputError : a cell with an error such as #DIV/0!, or with a formula that was not computed.
+    """
+    try:
+        with zipfile.ZipFile(io.BytesIO(data)) as archive:
+            sheets = [archive.read(name).decode("utf-8") for name in _visible_parts(archive)]
+    except Exception:  # zipfile and the parser raise many kinds; the reader says what is wrong with the archive
+        return
+    for attributes, content in (cell.groups() for text in sheets for cell in _CELL.finditer(text)):
+        kind, value = _attribute(attributes, "t"), _VALUE.search(content)
+        place = f"cell {_attribute(attributes, 'r')}"
+        if kind == "e":
+            raise InputError(f"{place}: {value[1] if value else 'an error'} is the error of a formula", file=path)
+        if not kind and value is None and _FORMULA.search(content):
+            message = f"{place}: a formula without its value; open and save the workbook, or write the value"
+            raise InputError(message, file=path)
+
+
+def _visible_parts(archive: zipfile.ZipFile) -> list[str]:
+    """Names of the files of the visible sheets in an Excel workbook."""
+    book, links = (ElementTree.fromstring(archive.read(f"xl/{name}")) for name in _BOOK)
+    targets = {link.get("Id"): link.get("Target", "") for link in links}
+    shown = [
+        sheet for sheet in book.iter() if sheet.tag.endswith("}sheet") and sheet.get("state", "visible") == "visible"
+    ]
+    files = [next(targets[value] for key, value in sheet.items() if key.endswith("}id")) for sheet in shown]
+    return [target[1:] if target.startswith("/") else f"xl/{target}" for target in files]
+
+
+def _attribute(attributes: str, name: str) -> str:
+    match = re.search(rf'\b{name}="([^"]*)"', attributes)
+    return "" if match is None else match[1]
 
 
 def _check_extent(data: bytes, path: Path) -> None:

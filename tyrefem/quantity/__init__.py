@@ -190,7 +190,7 @@ def _convert(magnitude: float, text: str, unit: str, value: object, wanted: str)
         raise InputError(f"{text[:60]!r}... is not a unit; expected {wanted}")
     if re.match(r",\d", text):
         raise InputError(f"{value!r:.80} has a comma; numbers have a decimal point; expected {wanted}")
-    if not _UNIT.fullmatch(text) or re.search(r"\)\s*(?:\*\*|\^)", text):
+    if text.count("%") > 1 or not _UNIT.fullmatch(text) or re.search(r"\)\s*(?:\*\*|\^)", text):
         raise InputError(f"'{text}' in {value!r:.80} is not a unit; expected {wanted}")
     try:
         given = _pint_name(text)

@@ -169,7 +169,9 @@ def _box(
             count=1,
         )
     except InputError as error:
-        raise error if vary or not choice.vary else error.within(field="explore") from None
+        of_limits = (error.field or "").partition(".")[0] == "limits"
+        of_study = choice.limits and not limits if of_limits else choice.vary and not vary
+        raise error.within(field="explore") if of_study else error from None
     pair = axes or choice.axes
     keys = [number.key for number in plan.varied]
     if pair is not None and not (isinstance(pair, list | tuple) and len(set(pair)) == len(pair) == 2):

@@ -17,7 +17,7 @@ from tyrefem.estimates import work as estimate
 from tyrefem.inputs.origin import StudyOrigin
 from tyrefem.inputs.study import StudyData
 from tyrefem.realtime.export import arrays_of, outputs_of, write
-from tyrefem.realtime.inputs import NAMES, Box, BoxDrive, box_of, random_drive, steady
+from tyrefem.realtime.inputs import NAMES, PART, Box, BoxDrive, box_of, random_drive, steady
 from tyrefem.realtime.settings import ExportSettings
 from tyrefem.realtime.suitability import check_suitable
 from tyrefem.realtime.tables import Probe
@@ -201,7 +201,10 @@ def export(
     if not horizon >= 1:
         raise InputError(f"{horizon:g} s is too short for drives: must be a second or more", field="duration")
     report("tables", 0, 1)
-    training = _Training(study, box, horizon, settings, report, scheduler)
+    try:
+        training = _Training(study, box, horizon, settings, report, scheduler)
+    except InputError as refused:
+        raise _of_box(refused, ranges or {}) from None
     report("tables", 1, 1)
     seed, count = settings.seed, settings.fresh
     cube = np.random.default_rng(seed).random((settings.rounds * count, 5))
@@ -239,6 +242,17 @@ def _corners() -> list[Array]:
     """The middle of the box, its warmest and its coldest corner."""
     warm = np.array([name != "pressure" for name in NAMES], dtype=float)
     return [np.full(5, 0.5), warm, 1 - warm]
+
+
+def _of_box(error: InputError, given: Mapping[str, Any]) -> InputError:
+    """The error of a drive within the box with its input as field: no file has the phases of such a drive."""
+    field = error.field or ""
+    if not field.startswith(f"drive.phases.{PART}"):
+        return error
+    name = field.rpartition(".")[2]
+    if name == "deflection":
+        name = "pressure" if "pressure" in given and "load" not in given else "load"
+    return InputError(error.message, field=name)
 
 
 @dataclass(eq=False)

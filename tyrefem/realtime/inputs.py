@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -27,6 +28,8 @@ PARTS, SHORTEST = 6, 20.0
 #: A ramp of load or pressure becomes so many phases of the study: within each the strain cycles are interpolated
 #: between nine points, which keeps their error small.
 SPLIT = 3
+#: Begin of the names of the phases of a drive within the box.
+PART = "part "
 
 
 @dataclass(frozen=True)
@@ -74,10 +77,7 @@ def box_of(study: StudyData, given: Mapping[str, tuple[Any, Any]] | None = None)
     for name in NAMES:
         if given and name in given:
             try:
-                low, high = (
-                    parse(limit, INPUTS[name]) if isinstance(limit, str) else float(limit)
-                    for limit in _pair(name, given[name])
-                )
+                low, high = (_end(name, limit) for limit in _pair(name, given[name]))
             except InputError as error:
                 raise error if error.field else error.within(field=name) from None
         else:
@@ -96,7 +96,7 @@ def box_of(study: StudyData, given: Mapping[str, tuple[Any, Any]] | None = None)
 
 def _as_given(name: str, ends: Any) -> tuple[str, str]:
     """Both ends of a range as a person gave them, numbers with the unit of the input."""
-    low, high = (end if isinstance(end, str) else f"{end:g} {INPUTS[name]}" for end in _pair(name, ends))
+    low, high = (f"{end:g} {INPUTS[name]}" if isinstance(end, Real) else str(end) for end in _pair(name, ends))
     return low, high
 
 
@@ -114,9 +114,16 @@ def _check_drives(study: StudyData, box: Box, name: str, written: tuple[str, str
 
 
 def _pair(name: str, given: Any) -> tuple[Any, Any]:
-    if isinstance(given, str | int | float) or len(given) not in (1, 2):
+    if isinstance(given, str | bytes) or not isinstance(given, Sequence | np.ndarray) or len(given) not in (1, 2):
         raise InputError(f"a range is (from, to), not {given!r:.40}", field=name)
     return given[0], given[-1]
+
+
+def _end(name: str, limit: Any) -> float:
+    """One end of a range, SI; a number has the unit of the input."""
+    if isinstance(limit, Real) and not isinstance(limit, bool):
+        return float(limit)
+    return parse(limit, INPUTS[name])
 
 
 def _around(study: StudyData, name: str) -> tuple[float, float]:
@@ -174,7 +181,7 @@ class BoxDrive:
             count = SPLIT if (a[1:3] != b[1:3]).any() else 1
             for i in range(count):
                 first, last = a + (b - a) * (i / count), a + (b - a) * ((i + 1) / count)
-                name = f"part {k + 1}" + (f".{i + 1}" if count > 1 else "")
+                name = f"{PART}{k + 1}" + (f".{i + 1}" if count > 1 else "")
                 phases.append({"name": name, "duration": f"{length / count:.12g} s", **_written(first, last)})
         return study.replace(
             {

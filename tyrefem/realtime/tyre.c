@@ -343,7 +343,13 @@ EXPORT fmi2Status FMI(fmi2SetReal)(fmi2Component c, const fmi2ValueReference vr[
             t->s.inputs[vr[i]] = value[i];
             t->s.slope[vr[i]] = 0.0; /* held, unless its derivative follows */
         }
-        else if (vr[i] == INITIAL) start_at(t, value[i]);
+        else if (vr[i] == INITIAL) {
+            if (!isfinite(value[i])) {
+                say(t, fmi2Error, "initial_temperature is not a number");
+                return fmi2Error;
+            }
+            start_at(t, value[i]);
+        }
         else return unknown(t);
     }
     return fmi2OK;

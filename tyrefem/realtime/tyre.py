@@ -116,6 +116,8 @@ class RealTimeTyre:
     def reset(self, temperature: float | None = None) -> None:
         """Set all temperatures to one value, degC (default: that of the study); the first step inflates the tyre."""
         start = float(self.about["initial"] if temperature is None else temperature)
+        if not math.isfinite(start):
+            raise ValueError(f"a temperature must be a number of degC, not {start:g}")
         self.time, self._start, self._filled = 0.0, start, math.nan
         lumped = self._data["lumped_start"]
         self._y = np.concatenate([start * self._data["even"], np.where(np.isnan(lumped), start, lumped)])

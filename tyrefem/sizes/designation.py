@@ -67,6 +67,8 @@ EXAMPLES = (
 #: Height of a truck section over its width where the size gives the width in inches. Estimate: 10R22.5 to 12R22.5
 #: are 0.85 to 0.88 by the standard (ETRTO, from memory).
 FULL_SERIES = 0.865
+#: Smallest and largest ply rating.
+PLY_RATINGS = (2, 60)
 #: Load range of a ply rating (Tire and Rim Association, from memory).
 LOAD_RANGES = {6: "C", 8: "D", 10: "E", 12: "F"}
 #: Without LT, widths from here on that are written to the half inch, on rims from here on, are of light trucks, in:
@@ -198,10 +200,12 @@ def _metric(text: str, match: re.Match[str]) -> TyreSize:
     if match["letter"] and not light and (kind != "light-truck" or "/" in match["slash"]):
         whole = f"LT{text.removeprefix(match['service'] or '').strip()}"
         raise InputError(f"'{text}': load ranges belong to light-truck sizes, which are written {whole}", field="size")
-    if kind == "passenger" and not match["width"].endswith("5"):
+    if kind == "passenger" and int(match["width"]) % 10 != 5:
+        # The width of three digits in the same ten.
+        near = str(max(int(match["width"]) // 10 * 10 + 5, 105))
         raise InputError(
             f"'{text}' is no car size, whose widths end in 5, but one of motorcycles or tractors, which have no rules "
-            f"here; nearest: {text.replace(match['width'], str(int(match['width']) + 5), 1)}",
+            f"here; nearest: {text.replace(match['width'], near, 1)}",
             field="size",
         )
     width = float(match["width"]) * MM
@@ -296,7 +300,13 @@ def _tidy(text: str) -> str:
 
 
 def _plies(match: re.Match[str]) -> int | None:
-    return int(match["plies"]) if match["plies"] else None
+    """The ply rating of a size; None without one."""
+    if not match["plies"]:
+        return None
+    low, high = PLY_RATINGS
+    if not low <= int(match["plies"]) <= high:
+        raise InputError(f"'{match[0]}' has the ply rating {match['plies']}; allowed: {low} to {high}", field="size")
+    return int(match["plies"])
 
 
 def _load(match: re.Match[str]) -> float | None:

@@ -23,6 +23,8 @@ UNITS = {
     "1/m": ("1/m", 1.0),
     "1": ("1", 1.0),
 }
+#: Upper limit of a number that has none, SI.
+UNLIMITED = 1e9
 #: Numbers that count things.
 COUNTS = ("plies", "belt_plies", "ply_rating", "grooves")
 
@@ -68,7 +70,9 @@ class Rules:
     given: Mapping[str, Any] = field(default_factory=dict)
     numbers: dict[str, Number] = field(default_factory=dict)
 
-    def __call__(self, name: str, value: float, unit: str, source: str, low: float = 0.0, high: float = 1e9) -> float:
+    def __call__(
+        self, name: str, value: float, unit: str, source: str, low: float = 0.0, high: float = UNLIMITED
+    ) -> float:
         """The number of a rule, SI, unless it is given. ``low`` to ``high``: what is allowed.
 
         Raises
@@ -84,6 +88,8 @@ class Rules:
                 raise InputError(f"must be a whole number, not {value:g}", field=f"parameters.{name}")
         if not low <= value <= high:
             limits = f"{written(low, unit)} to {written(high, unit)}"
+            if high >= UNLIMITED:
+                limits = f"at least {written(low, unit)}"
             raise InputError(
                 f"{written(value, unit)} is outside what is possible here: {limits}", field=f"parameters.{name}"
             )

@@ -64,6 +64,11 @@ def drawn_of(reference: Mapping[str, Any] | str) -> Drawn:
     parameters = reference.get("parameters", {})
     if not isinstance(parameters, Mapping):
         raise InputError("must be a table of names and quantities", field="parameters")
+    for key in NUMBERS:
+        if key in reference and key in parameters:
+            raise InputError(
+                f"'{key}' of the same table is this number too: give one of them", field=f"parameters.{key}"
+            )
     given = {key: value for key, value in parameters.items() if key not in _OF_FILE}
     given |= {key: reference[key] for key in NUMBERS if key in reference}
     try:

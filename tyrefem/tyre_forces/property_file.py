@@ -133,16 +133,17 @@ def _entries(entries: Mapping[str, object]) -> list[str]:
     return [f"{name:{WIDTH}} = {text(value)}" for name, value in entries.items()]
 
 
-def read_tir(path: Path) -> MagicFormula:
+def read_tir(path: str | Path) -> MagicFormula:
     """The pure slip of a `.tir` file with FITTYP 61.
 
     Raises
     ------
-    InputError : no such file; another FITTYP; a number that cannot be read; nominal load, pressure or radius missing; a
-        scaling factor of pure slip that is not 1; units that are not SI and radians.
+    InputError : no such file; another FITTYP; a number that cannot be read, or that stands twice with other values;
+        nominal load, pressure or radius missing; a scaling factor of pure slip that is not 1; units that are not SI
+        and radians.
     """
     try:
-        lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
+        lines = Path(path).read_text(encoding="utf-8", errors="replace").splitlines()
     except OSError as error:
         raise InputError(f"cannot be read: {error.strerror}", file=path) from None
     values: dict[str, float] = {}
@@ -154,14 +155,16 @@ def read_tir(path: Path) -> MagicFormula:
             if unit not in UNITS[name]:
                 message = f"line {number}: must be '{UNITS[name][0]}', not '{unit}': numbers are read in SI and radians"
                 raise InputError(message, file=path, field=name)
-        if not equals or name in UNITS or word.startswith("'"):
+        if not equals or name not in READ:
             continue
         try:
-            values[name] = float(word)
+            value = float(word.strip("'\" "))
         except ValueError:
-            values[name] = math.nan
-        if name in READ and not math.isfinite(values[name]):
+            value = math.nan
+        if not math.isfinite(value):
             raise InputError(f"line {number}: '{word}' is not a number", file=path, field=name)
+        if values.setdefault(name, value) != value:
+            raise InputError(f"line {number}: is {value:g} here, {values[name]:g} above", file=path, field=name)
     if values.get("FITTYP") != 61:
         raise InputError(f"must be 61, not {values.get('FITTYP', 'missing')}", file=path, field="FITTYP")
     for name in NOMINAL:

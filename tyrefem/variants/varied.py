@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tyrefem.errors import InputError
-from tyrefem.inputs.changes import check_factor, scaled
+from tyrefem.inputs.changes import check_factor, check_number, scaled
 from tyrefem.inputs.name_patterns import number_at
 from tyrefem.quantity import KELVIN, amount_parts, parse
 from tyrefem.variants.card import VaryCard
@@ -222,6 +222,7 @@ def factored(study: StudyData, group: Members) -> Varied:
     values = [number_at(study.data, key, study.folder) for key in group.keys]
     for key, value in zip(group.keys, values, strict=True):
         scaled(value, 1.0)
+        check_number(value)
         check_factor(value)
         if not _first(value):
             raise InputError(f"is {value!r}: a factor does not change it; give values", field=key)
