@@ -18,7 +18,6 @@ from tyrefem.threads import VARIABLES, one_thread, one_thread_by_default, usable
 #: A command, and then the numbers of threads of its libraries.
 COMMAND = """
 import sys
-from pathlib import Path
 from tyrefem.cli import main
 sys.argv = ["tyrefem", "check", "nasa-22x5.5-8pr"]
 try:

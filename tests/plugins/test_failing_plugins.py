@@ -11,6 +11,7 @@ import pytest
 import tyrefem as tf
 from tyrefem.boundaries import laws
 from tyrefem.contracts import template
+from tyrefem.diagnose.forward.fixed_step import breaks
 from tyrefem.effects import catalogue, use_effects
 from tyrefem.errors import PluginWarning
 from tyrefem.mechanics.strain_laws import strain_laws
@@ -311,7 +312,7 @@ CLASSES = {
     "surface": ('("outside_air",)', '("outside-air",)', "unknown surface 'outside-air'; did you mean 'outside_air'"),
     "text": ('("outside_air",)', '("outside_air")', "'surfaces' must be a tuple of names"),
     "jump": ("    # Unit,", "    jumps: ClassVar = 5.0\n    # Unit,", "'jumps' must be a tuple of times in seconds"),
-    "jumps": ("    # Unit,", "    jumps: ClassVar = [5.0]\n    # Unit,", "'jumps' must be a tuple of times in seconds"),
+    "jumps": ("    # Unit,", "    jumps: ClassVar = ['s']\n    # Unit,", "'jumps' must be a tuple of times in seconds"),
     "no unit": ('"W/m**2"', '""', "parameter 'shine' needs a unit"),
     "no such unit": ('"W/m**2"', '"W/mm**2/x"', "parameter 'shine': unknown unit 'W/mm"),
 }
@@ -323,6 +324,12 @@ def test_a_class_that_would_do_nothing_is_left_out_in_words(write: Write, fault:
     write("effect", (old, new))
     with pytest.warns(PluginWarning, match=words):
         assert registry().plugins == ()
+
+
+def test_jumps_may_be_a_list(write: Write) -> None:
+    """Times of a diagnosis are those of all effects, also of one that the study does not have."""
+    write("effect", ("    # Unit,", "    jumps: ClassVar = [5.0]\n    # Unit,"))
+    assert 5.0 in breaks(study({}))
 
 
 def test_a_factor_for_another_number_of_temperatures_names_the_plugin(write: Write) -> None:

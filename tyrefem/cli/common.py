@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 import shlex
 import tomllib
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -131,6 +132,16 @@ def placed(error: InputError, options: Mapping[str, str], given: Collection[str]
     if name in OF_DRIVE and name not in given:
         return study.as_written(InputError(error.message, field=f"drive.phases.0.{name}", file=study.file))
     return InputError(error.message, field=options[name]) if name in options else error
+
+
+@contextmanager
+def options_named(options: Mapping[str, str]) -> Iterator[None]:
+    """Errors in this block name the option of an argument. ``options``: name of an argument -> its option."""
+    try:
+        yield
+    except InputError as error:
+        field = options.get(error.field or "", error.field)
+        raise InputError(error.message, field=field, file=error.file) from None
 
 
 def read_quantity(option: str, text: str, unit: str, **bounds: float) -> float:

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
-from tyrefem.cli.common import ForceOption, IgnoreOption, RenameOption, renamed, warn
+from tyrefem.cli.common import ForceOption, IgnoreOption, RenameOption, options_named, renamed, warn
 from tyrefem.cli.progress import progress
 from tyrefem.cli.shell import answer_with, say
 from tyrefem.errors import InputError, Interrupted
@@ -26,16 +24,6 @@ RigArgument = Annotated[str, typer.Argument(metavar="RIG", help="A rig's name, r
 OutOption = Annotated[Path | None, typer.Option("--out", help="Folder; default: results/rig-...")]
 #: Typical number of simulated tests in the fit of one model, for the progress bar.
 _USUAL = 16
-
-
-@contextmanager
-def _naming_option(name: str) -> Iterator[None]:
-    """Errors of the argument ``name`` in this block name the option of the command."""
-    try:
-        yield
-    except InputError as error:
-        field = f"--{name}" if error.field == name else error.field
-        raise InputError(error.message, field=field, file=error.file) from None
 
 
 @group.command()
@@ -67,7 +55,7 @@ def simulate(
         ) as folder,
         progress(f"{_name(file)}: simulated tests"),
     ):
-        with _naming_option("every"):
+        with options_named({"every": "--every"}):
             done = rigs.simulate(file, every=step, seed=seed)
         write_simulation(done, folder)
     rows = {name: run.temperatures.max().round(2).to_dict() for name, run in done.runs.items()}
@@ -112,7 +100,7 @@ def identify(
     card, file = rigs.load(rig)
     warn(warning.within(file=file) for warning in card.warnings())
     given = tables_of(card, file, tables or ())
-    with _naming_option("without"):
+    with options_named({"without": "--without"}):
         tests = rigs.read(card, given, without or (), rename=renamed(rename), ignore=ignore or ())
     chosen = bases(card, base or [])
     count = 0

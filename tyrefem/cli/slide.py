@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
-from tyrefem.cli.common import ForceOption
+from tyrefem.cli.common import ForceOption, options_named
 from tyrefem.cli.shell import answer_with, say
 from tyrefem.errors import InputError
 from tyrefem.output.file import PICTURES, results_file
@@ -77,7 +76,7 @@ def rise(
         "peclet_number": v * long / below.diffusivity,
         "heated_depth_m": 2.0 * (below.diffusivity * dwell) ** 0.5,
     }
-    with _options_named({"distance": "--behind", "slid": "--slid"}):
+    with options_named({"distance": "--behind", "slid": "--slid"}):
         if behind is not None:
             rises["rise_behind_K"] = edge * sliding.fall_off(_read("--behind", behind, "m"), long)
         if slid is not None:
@@ -134,7 +133,7 @@ def locked_wheel(
     changes: dict[str, Any] = {
         name: _read(option, text, unit, LEAST) for name, (option, text, unit) in given.items() if text is not None
     }
-    with _options_named({name: option for name, (option, _, _) in given.items()}):
+    with options_named({name: option for name, (option, _, _) in given.items()}):
         car = replace(LockedWheel(), **changes)
     rows = [
         {
@@ -169,15 +168,6 @@ def _draw(picture: Callable[[Any], Any], shown: Any, out: Path, force: bool) -> 
 
     with results_file(out, PICTURES, force=force), atomic_path(out) as temporary:
         temporary.write_bytes(written(picture(shown), out.suffix))
-
-
-@contextmanager
-def _options_named(options: Mapping[str, str]) -> Iterator[None]:
-    """Errors of a number name its option. ``options``: name of a number -> its option."""
-    try:
-        yield
-    except InputError as error:
-        raise InputError(error.message, field=options.get(error.field or "", error.field)) from None
 
 
 def _read(option: str, text: str, unit: str, least: float | None = None) -> float:

@@ -417,7 +417,7 @@ def complaint(cls: type[Effect]) -> str | None:
 
 def _wrong_surfaces(surfaces: Any) -> str | None:
     """What is wrong with a class's surfaces: at an unknown one an effect would do nothing."""
-    if isinstance(surfaces, property):  # of each study
+    if isinstance(surfaces, property | functools.cached_property):  # of each study
         return None
     if not isinstance(surfaces, tuple | list):
         return f"'surfaces' must be a tuple of names, such as ('road',), not {surfaces!r:.40}"
@@ -426,8 +426,10 @@ def _wrong_surfaces(surfaces: Any) -> str | None:
 
 
 def _wrong_jumps(jumps: Any) -> str | None:
-    """What is wrong with a class's jumps: a diagnosis would leave out those of a list."""
-    if isinstance(jumps, property) or (isinstance(jumps, tuple) and all(isinstance(t, int | float) for t in jumps)):
+    """What is wrong with a class's jumps: a run ends a time step at each of them."""
+    if isinstance(jumps, property | functools.cached_property):  # of each effect
+        return None
+    if isinstance(jumps, tuple | list) and all(isinstance(time, int | float) for time in jumps):
         return None
     return f"'jumps' must be a tuple of times in seconds, such as (300.0,), not {jumps!r:.40}"
 

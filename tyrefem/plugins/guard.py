@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import functools
 import inspect
+import math
 import traceback
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
+from tyrefem.cache import read_only
 from tyrefem.errors import InputError
 from tyrefem.plugins.origin import Origin
 from tyrefem.plugins.signature import contract_methods
@@ -58,7 +60,7 @@ def guarded(function: Callable[..., Any], place: str, origin: Origin, file: str 
     @functools.wraps(function)
     def call(*args: Any, **named: Any) -> Any:
         try:
-            return function(*map(_read_only, args), **named)
+            return function(*(read_only(each) if isinstance(each, np.ndarray) else each for each in args), **named)
         except (InputError, MemoryError):
             raise
         except (Exception, SystemExit) as error:
@@ -78,6 +80,8 @@ def _with_number(function: Callable[..., Any], numbers: str | None, place: str, 
     @functools.wraps(function)
     def checked(*args: Any, **named: Any) -> Any:
         value = function(*args, **named)
+        if isinstance(value, float) and math.isfinite(value):
+            return value
         if value is None and allows_none:
             return value
         if np.ndim(value) == 0 and np.asarray(value).dtype.kind in "fiub" and np.isfinite(value):
@@ -88,14 +92,6 @@ def _with_number(function: Callable[..., Any], numbers: str | None, place: str, 
         raise wrong
 
     return checked
-
-
-def _read_only(value: Any) -> Any:
-    """An array as a view that cannot be changed in place; everything else as it is."""
-    if isinstance(value, np.ndarray):
-        value = value.view()
-        value.flags.writeable = False
-    return value
 
 
 def failure_words(error: BaseException, file: str) -> str:

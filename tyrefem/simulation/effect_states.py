@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.cache import read_only
 from tyrefem.effects import Effect
 from tyrefem.effects.state import EffectState, TemperaturesOfTyre, Value
 from tyrefem.effects.tyre import Tyre
@@ -119,8 +120,7 @@ class EffectStates:
 
     @staticmethod
     def _value(place: _Place, z: Array) -> Value:
-        part = z[place.part].reshape(place.shape)
-        part.flags.writeable = False  # of the solver: a rate that is computed in place would change it
+        part = read_only(z[place.part].reshape(place.shape))  # of the solver
         return part if part.ndim else float(part)
 
     def named(self, values: Array) -> dict[str, StateHistory]:

@@ -262,6 +262,10 @@ class ResultData(Brief):
     @property
     def extreme_rows(self) -> list[dict[str, Any]]:
         """Highest temperature of the tyre and of every region over the whole run, with place and time."""
+        return [dict(row) for row in self._extreme_rows]
+
+    @functools.cached_property
+    def _extreme_rows(self) -> list[dict[str, Any]]:
         rows = []
         for region, peak in self.peaks.items():
             s, depth = self.place_of(peak)

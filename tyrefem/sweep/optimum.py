@@ -129,7 +129,7 @@ def objective(outcome: Outcome, card: OptimiseCard) -> float:
     """The number to minimise; a time that is not reached is the longest, a failure or no such number is infinite."""
     if isinstance(outcome, Failed) or card.answer not in outcome.answers:
         return math.inf
-    value = comparable(card.answer, outcome.answers[card.answer])
+    value = float(comparable(card.answer, outcome.answers[card.answer]))
     if math.isnan(value):
         return math.inf
     return value if card.minimise else -value
@@ -147,7 +147,7 @@ def violation(outcome: Outcome, limits: Mapping[str, LimitCard], margins: Mappin
         return FAILED if limits else 0.0
     total = 0.0
     for name, limit in limits.items():
-        value = comparable(name, outcome.answers[name])
+        value = float(comparable(name, outcome.answers[name]))
         if math.isnan(value):
             total += FAILED
             continue

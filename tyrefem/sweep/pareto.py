@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from tyrefem.errors import InputError, nearest
 from tyrefem.sweep.part import InSentences
-from tyrefem.variants.answers import NEVER, TIME_TO
+from tyrefem.variants.answers import comparable
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -66,12 +66,13 @@ def front(table: pd.DataFrame, aims: Mapping[str, str] | None = None) -> pd.Data
             raise InputError(f"no answer '{name}'{nearest(name, table.columns)}", field="pareto")
         if aim not in ("min", "max"):
             raise InputError(f"'{aim}' is not an aim; allowed: min, max", field=f"pareto.{name}")
-    # Only a time may have no number, as it is never reached: a share of no heat is neither small nor large.
-    feasible = feasible.dropna(subset=[name for name in aims if name in feasible and name != TIME_TO])
     if not aims or feasible.empty:
         return feasible.iloc[:0]
-    signed = np.column_stack([feasible[name].fillna(NEVER) * (1 if aim == "min" else -1) for name, aim in aims.items()])
-    return feasible[undominated(signed)].sort_values(next(iter(aims)))
+    columns = [comparable(name, feasible[name]) * (1 if aim == "min" else -1) for name, aim in aims.items()]
+    signed = np.column_stack(columns)
+    # A share of no heat is neither small nor large.
+    known = ~np.isnan(signed).any(axis=1)
+    return feasible[known][undominated(signed[known])].sort_values(next(iter(aims)))
 
 
 @dataclass(frozen=True, eq=False, repr=False)

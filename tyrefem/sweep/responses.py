@@ -12,7 +12,7 @@ from tyrefem.brief import counted
 from tyrefem.sweep.part import InSentences
 from tyrefem.sweep.sweep import Sweep
 from tyrefem.variants.answer_units import difference_unit, name_of, shown
-from tyrefem.variants.answers import NEVER, TIME_TO
+from tyrefem.variants.answers import TIME_TO, comparable
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -141,8 +141,8 @@ def _moved(row: Mapping[Any, Any], unit: str) -> str:
 
 def extreme(table: pd.DataFrame, answer: str, *, least: bool) -> Mapping[str, Any]:
     """The row with the smallest or largest answer; a time that is not reached is the largest, of others NaN is none."""
-    without = NEVER if answer == TIME_TO else np.inf if least else -np.inf
-    values = table[answer].fillna(without).to_numpy(dtype=float)
+    values = comparable(answer, table[answer])
+    values = np.where(np.isnan(values), np.inf if least else -np.inf, values)
     place = int(values.argmin() if least else values.argmax())
     return {str(name): value for name, value in table.iloc[place].items()}
 

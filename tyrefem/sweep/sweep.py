@@ -16,7 +16,7 @@ from tyrefem.brief import Brief, counted
 from tyrefem.cache import Cache
 from tyrefem.errors import InputError, nearest
 from tyrefem.sweep.evaluation import VariantEvaluation
-from tyrefem.variants.answers import TIME_TO
+from tyrefem.variants.answers import TIME_TO, comparable
 from tyrefem.variants.blocks import Numbers
 from tyrefem.variants.dask_cluster import ClusterLostError
 from tyrefem.variants.execution import Execution, ExecutionOptions
@@ -159,12 +159,11 @@ class Sweep(Brief):
                     # All variants failed: none keeps a limit.
                     return np.zeros(len(table), dtype=bool)
                 raise InputError(f"no answer '{name}'{nearest(name, self.answers)}", field="limits")
-            values = table[name].to_numpy(dtype=float)
+            values = comparable(name, table[name])
             if limit.below is not None:
                 within &= values < limit.below
             if limit.above is not None:
-                # A time that is not reached (NaN) is later than any.
-                within &= (values > limit.above) | ((name == TIME_TO) & np.isnan(values))
+                within &= values > limit.above
         return within
 
     @functools.cached_property

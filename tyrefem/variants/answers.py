@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import fnmatch
 import functools
-import math
 from collections.abc import Callable, Iterable, Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
@@ -92,13 +91,14 @@ def answers(
     return values
 
 
-def comparable(name: str, value: float) -> float:
-    """An answer as a number to compare: a time that is not reached is `NEVER`; others without a number stay NaN.
+def comparable(name: str, values: Any) -> Any:
+    """An answer, or many, as numbers to compare: a time that is not reached is `NEVER`; others without one stay NaN.
 
-    >>> comparable("time_to_limit_s", math.nan), comparable("lost_rim_share", math.nan), comparable("mass_kg", 9)
-    (1000000000.0, nan, 9.0)
+    >>> comparable("time_to_limit_s", [600.0, np.nan]), comparable("lost_rim_share", [0.5, np.nan])
+    (array([6.e+02, 1.e+09]), array([0.5, nan]))
     """
-    return NEVER if name == TIME_TO and math.isnan(value) else float(value)
+    numbers = np.asarray(values, dtype=float)
+    return np.where(np.isnan(numbers), NEVER, numbers) if name == TIME_TO else numbers
 
 
 def answer_names(study: StudyData, time_to: float | None = None) -> list[str]:

@@ -43,7 +43,7 @@ class SweepSettings:
 
     def __post_init__(self) -> None:
         for name, number in dataclasses.asdict(self).items():
-            if not isinstance(number, Integral) or number < 1:
+            if isinstance(number, bool) or not isinstance(number, Integral) or number < 1:
                 raise InputError(f"must be a whole number of at least 1, not {number!r:.60}", field=f"settings.{name}")
 
 

@@ -234,7 +234,7 @@ def breaks(study: StudyData) -> list[float]:
     """
     drive = study.card.drive
     times = [*drive.starts, drive.end]
-    of_classes = [effect.jumps for effect in catalogue().values() if isinstance(effect.jumps, tuple)]
+    of_classes = [effect.jumps for effect in catalogue().values() if isinstance(effect.jumps, tuple | list)]
     for jump in sorted(jump for jumps in (*of_classes, *(effect.jumps for effect in study.effects)) for jump in jumps):
         if 0 < jump < drive.end and min(abs(jump - time) for time in times) > LEAST_STEP:
             times.append(jump)
