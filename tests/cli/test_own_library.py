@@ -105,7 +105,6 @@ def test_new_refuses_what_is_no_name(refused: Callable[..., str], name: str) -> 
             "'rim_width' is given twice beside",
         ),
         (["section", "205/60R15", "--set", "plies=1", "--set", "parameters.plies=2"], "--set: 'plies' is given twice"),
-        (["section", "205/60R15", "--set", "plies=1", "--set", "plies=2"], "--set: 'plies' has two values, 1 and 2"),
     ],
 )
 def test_new_refuses_options_that_contradict(refused: Callable[..., str], words: list[str], message: str) -> None:

@@ -41,7 +41,11 @@ StudyArgument = Annotated[
 ]
 SetOption = Annotated[
     list[str] | None,
-    typer.Option("--set", metavar="KEY=VALUE", help="Change one value, e.g. drive.speed='25 mph'. Repeatable."),
+    typer.Option(
+        "--set",
+        metavar="KEY=VALUE",
+        help="Change one value, e.g. drive.speed='25 mph'. Repeatable; the last of a name wins.",
+    ),
 ]
 ForceOption = Annotated[
     bool, typer.Option("--force", help="Replace files that this command did not write; an input is never replaced.")
@@ -88,7 +92,7 @@ def renamed(pairs: list[str] | None) -> dict[str, str]:
 
 
 def settings(pairs: list[str] | None) -> dict[str, Any]:
-    """Convert ``KEY=VALUE`` arguments to changes; a value in TOML (number, list, table) is parsed.
+    """Convert ``KEY=VALUE`` arguments to changes, the last of a key; a value in TOML (number, list, table) is parsed.
 
     >>> settings(["drive.speed=25 mph", "materials.tread.loss_tangent.value=0.25"])
     {'drive.speed': '25 mph', 'materials.tread.loss_tangent.value': 0.25}
@@ -102,9 +106,7 @@ def settings(pairs: list[str] | None) -> dict[str, Any]:
             parsed = tomllib.loads(f"value = {text}")
         except (ValueError, RecursionError):  # beside errors of TOML: an endless number, or endless brackets
             parsed = {}
-        value = parsed["value"] if len(parsed) == 1 else text
-        if changes.setdefault(key.strip(), value) != value:
-            raise InputError(f"'{key.strip()}' has two values, {changes[key.strip()]} and {value}", field="--set")
+        changes[key.strip()] = parsed["value"] if len(parsed) == 1 else text
     return changes
 
 
