@@ -175,6 +175,8 @@ class Effect(Card):
     @model_validator(mode="after")
     def _check_deviations(self) -> Effect:
         """Refuse a standard deviation of no parameter, or that is none: a diagnosis would leave it out unseen."""
+        if not self.sd:
+            return self
         units = {parameter.name: parameter.prior.unit for parameter in self.parameters()}
         for name, deviation in self.sd.items():
             if name not in units:
