@@ -30,3 +30,19 @@ def test_a_second_swap_of_a_sensor_has_no_column_by_either_model() -> None:
         assert np.isfinite(jacobian[:, :-1]).all()
     largest = np.abs(simulated[:, :-1]).max(axis=0)
     assert (np.abs(reduced - simulated)[:, :-1].max(axis=0) < 0.02 * largest.max()).all()
+
+
+def test_a_number_at_its_limit_has_the_column_of_a_step_back() -> None:
+    study = tf.study("hidden-effect", {"mesh.size": "12 mm", "materials.bead.loss_tangent.value": 9.95})
+    model = ForwardModel(study, planned(study)[:1], settings=DiagnosisSettings(mesh_size="12 mm"))
+    unknowns = unknowns_of(study, list(study.sensors), ())[0]
+    loss = next(each for each in unknowns if each.key == "materials.bead.loss_tangent.value")
+    (known,) = responses(Evaluations(model), [loss])
+    # tan delta 9.99: a step of 1 % is beyond 10.
+    status, reduced = model.reduced_jacobian(0, known.modes, [loss], {loss: 0.004})
+    simulated = model.jacobian(0, [loss], {loss: 0.004})
+    back = model.predict(0, {loss: 0.004}) - model.predict(0, {loss: 0.004 - loss.step})
+    assert status[0] == FOLLOWED
+    assert np.isnan(model.predict(0, {loss: 0.004 + loss.step})).all()
+    for jacobian in (reduced, simulated):
+        np.testing.assert_allclose(jacobian[:, 0], back / loss.step, rtol=0.02, atol=0.02 * np.abs(back).max() / 0.01)

@@ -20,7 +20,7 @@ from tyrefem.diagnose.forward.reading_sensitivities import ReadingSensitivities,
 from tyrefem.diagnose.forward.reduced_drive import Modes, ReducedDrive, modes_of
 from tyrefem.diagnose.forward.sampling import DriveSampling
 from tyrefem.diagnose.forward.source_responses import source_responses
-from tyrefem.diagnose.forward.step_groups import step_groups, stepped
+from tyrefem.diagnose.forward.step_groups import possible_step, step_groups
 from tyrefem.diagnose.forward.strain_law_study import heats_by_law, readings_by_law
 from tyrefem.diagnose.settings import DEFAULT, DiagnosisSettings
 from tyrefem.diagnose.unknowns.unknown import Unknown, with_values
@@ -352,15 +352,13 @@ class ForwardModel(Brief):
         base, drive = self.base(number), self._reduced_drive(number, modes)
         here = self.with_values(base.study, at, base.study)
         there: dict[tuple[int, ...], tuple[StudyData, bool]] = {}
+        back: set[tuple[int, ...]] = set()
         for group in step_groups(unknowns, here):
             unknown = unknowns[group[0]]
-            try:
-                study = self.with_values(base.study, stepped(unknowns, group, at), here)
-            except InputError:
-                if unknown.effect is None or unknown.origin is not None:
-                    raise
-                continue
-            there[group] = study, unknown.measures or not unknown.acts_in(base.study.card.run)
+            step = possible_step(unknowns, group, at, lambda values, _: self.with_values(base.study, values, here))
+            if step is not None:
+                there[group] = step[0], unknown.measures or not unknown.acts_in(base.study.card.run)
+                back |= {group} if step[1] < 0 else set()
         changes = drive.changes(here, list(there.values()))
         jacobian = np.full((self.drives[number].size, len(unknowns)), np.nan)
         if changes is None:
@@ -374,7 +372,7 @@ class ForwardModel(Brief):
                 unknown = unknowns[column]
                 rows = slice(None) if len(group) == 1 else parts.get(unknown.only_sensor or "", slice(0))
                 jacobian[:, column] = 0.0
-                jacobian[rows, column] = blocks[rows] / unknown.step
+                jacobian[rows, column] = blocks[rows] / (-unknown.step if group in back else unknown.step)
         return np.array([FOLLOWED]), jacobian
 
     @functools.cached_property

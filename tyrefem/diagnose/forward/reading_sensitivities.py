@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.conduction.sensitivity import Perturbed, Tangents, tangents
 from tyrefem.diagnose.forward.fixed_step import FixedStepRun, run_of_tyre
-from tyrefem.diagnose.forward.step_groups import step_groups, stepped
+from tyrefem.diagnose.forward.step_groups import of_further_effect, possible_step, step_groups
 from tyrefem.diagnose.unknowns.unknown import Unknown
 from tyrefem.errors import InputError
 from tyrefem.inputs.study import StudyData
@@ -30,7 +30,7 @@ class ReadingSensitivities:
     Parameters
     ----------
     again : numbers of unknowns -> second simulation or measurement with them one step further; of several, see
-        `step_groups`, each changes the reading of its sensor only.
+        `step_groups`, each changes the reading of its sensor only. back : those of them with a step back instead.
     columns : numbers of the other unknowns. tangents : dT/dx of these unknowns, in this order.
     moved : number of an unknown that moves one sensor -> the sensor, and the direction (0: along, 1: in depth).
     failed : numbers of unknowns with which no tyre can be built; their sensitivities are NaN.
@@ -43,6 +43,7 @@ class ReadingSensitivities:
     tangents: Tangents | None
     failed: Sequence[int] = ()
     moved: Mapping[int, tuple[str, int]] = field(default_factory=dict)
+    back: frozenset[tuple[int, ...]] = frozenset()
 
     @property
     def of_tangents(self) -> list[Unknown]:
@@ -61,6 +62,7 @@ class ReadingSensitivities:
         for group, other in self.again.items():
             for sensor in sensors:
                 change = other.readings[sensor] - base.readings[sensor]
+                change = -change if group in self.back else change
                 for column in group:
                     unknown = self.unknowns[column]
                     if len(group) == 1 or unknown.only_sensor == sensor:
@@ -101,8 +103,8 @@ def sensitivities_about(
     """Sensitivities about a solution: tangents if the unknown keeps the mesh, else a second simulation.
 
     ``base``: the solution with unknowns at ``at``. ``study_of``: values of unknowns -> the study. ``double``: tangents
-    in steps twice as long, which takes half the time. Sensitivities of a further effect with which no tyre can be built
-    are NaN, those of an effect in other runs 0.
+    in steps twice as long, which takes half the time. A number at its limit steps back. Sensitivities of a further
+    effect with which no tyre can be built are NaN, those of an effect in other runs 0.
 
     Raises
     ------
@@ -113,6 +115,7 @@ def sensitivities_about(
     columns: list[int] = []
     perturbed: list[Perturbed] = []
     moved: dict[int, tuple[str, int]] = {}
+    back: set[tuple[int, ...]] = set()
     swapped = any(effect.overrides("channel") for effect in base.study.effects)
     acting = [column for column, unknown in enumerate(unknowns) if unknown.acts_in(base.study.card.run)]
     if not swapped:
@@ -122,34 +125,43 @@ def sensitivities_about(
         group = tuple(still[number] for number in numbers)
         column, *_ = group
         unknown = unknowns[column]
-        try:
-            study = study_of(stepped(unknowns, group, at))
-            if unknown.measures:
-                again[group] = base.as_measured_by(study)
-                continue
-            tyre = RollingTyre(study, base.tyre)
-            # The state of an effect adds unknowns that the base solution does not have.
-            if tyre.mesh is base.tyre.mesh and tyre.states is None and base.tyre.states is None:
-                perturbed.append(Perturbed(tyre.problem, unknown.step, tyre.drive.initial))
-                columns.append(column)
-            else:
-                again[group] = run_of_tyre(study, tyre, every=base.every)
-        except InputError:
-            if unknown.effect is None or unknown.origin is not None:
-                raise
+        step = possible_step(unknowns, group, at, partial(_changed, base, study_of, unknown))
+        if step is None:
             failed += group
+            continue
+        change, sign = step
+        if isinstance(change, Perturbed):
+            perturbed.append(change)
+            columns.append(column)
+        else:
+            again[group] = change
+            back |= {group} if sign < 0 else set()
     derivatives: Tangents | None = None
     try:
         derivatives = _tangents(base, perturbed, double=double)
     except InputError:
         alone = {column: each for column, each in zip(columns, perturbed, strict=True) if _possible(base, each)}
-        impossible = [column for column in columns if column not in alone]
-        if any(unknowns[column].effect is None or unknowns[column].origin is not None for column in impossible):
+        without = [column for column in columns if column not in alone]
+        if not all(of_further_effect(unknowns[column]) for column in without):
             raise
-        failed += impossible
+        failed += without
         columns = list(alone)
         derivatives = _tangents(base, list(alone.values()), double=double)
-    return ReadingSensitivities(base, tuple(unknowns), again, columns, derivatives, failed, moved)
+    return ReadingSensitivities(base, tuple(unknowns), again, columns, derivatives, failed, moved, frozenset(back))
+
+
+def _changed(
+    base: FixedStepRun, study_of: Callable[[Values], StudyData], unknown: Unknown, values: Values, sign: float
+) -> FixedStepRun | Perturbed:
+    """The run after a step of an unknown to ``values``, or the changed problem if it has the base's unknowns."""
+    study = study_of(values)
+    if unknown.measures:
+        return base.as_measured_by(study)
+    tyre = RollingTyre(study, base.tyre)
+    # The state of an effect adds unknowns that the base solution does not have.
+    if tyre.mesh is base.tyre.mesh and tyre.states is None and base.tyre.states is None:
+        return Perturbed(tyre.problem, sign * unknown.step, tyre.drive.initial)
+    return run_of_tyre(study, tyre, every=base.every)
 
 
 def _tangents(base: FixedStepRun, perturbed: Sequence[Perturbed], *, double: bool = False) -> Tangents | None:
