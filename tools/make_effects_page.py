@@ -176,8 +176,7 @@ def bounds() -> str:
     for effect in filter(_shown, catalogue().values()):
         for parameter in effect.parameters():
             prior = parameter.prior
-            start = prior.null if prior.start is None or prior.amplitude else prior.start
-            texts = [prior.text(value).partition(" ") for value in (start, prior.low, prior.high, prior.scale)]
+            texts = [prior.text(value).partition(" ") for value in (prior.origin, prior.low, prior.high, prior.scale)]
             kind = "amplitude" if prior.amplitude else "shape"
             meaning = f'"{prior.meaning}"' if "," in prior.meaning else prior.meaning
             row = [effect.name, parameter.name, meaning, kind, texts[-1][2] or "1", *(number for number, _, _ in texts)]

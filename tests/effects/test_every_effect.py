@@ -26,8 +26,8 @@ def test_it_says_what_it_is(name: str) -> None:
     assert len({parameter.prior.unit for parameter in effect.parameters() if parameter.prior.amplitude}) <= 1
     for parameter in effect.parameters():
         assert parameter.prior.meaning
-        assert parameter.prior.low <= parameter.prior.null <= parameter.prior.high
-        assert parameter.prior.low < parameter.prior.null + parameter.prior.scale < parameter.prior.high
+        assert parameter.prior.low <= parameter.prior.origin <= parameter.prior.high
+        assert parameter.prior.low < parameter.prior.origin + parameter.prior.scale < parameter.prior.high
 
 
 @pytest.mark.parametrize("name", AMPLITUDES)
@@ -103,9 +103,9 @@ def test_what_is_written_is_read(name: str) -> None:
     for parameter in effect.parameters():
         for value in (
             parameter.prior.low,
-            parameter.prior.null,
+            parameter.prior.origin,
             parameter.prior.high,
-            parameter.prior.null + parameter.prior.scale,
+            parameter.prior.origin + parameter.prior.scale,
         ):
             read = effect.check({**choice(name), parameter.name: parameter.prior.text(value, 12)})
             assert read.values[parameter.name] == pytest.approx(value, rel=1e-11, abs=1e-15)

@@ -132,7 +132,7 @@ def test_wrong_values_of_an_effect_end_before_the_first_step(write: Write, fault
     with pytest.raises(tf.InputError) as caught:
         study(USES["effect"]).run(reached.append)
     assert reached == []
-    assert str(caught.value).startswith(f"{file}: class Lamp: flux('outside_air'") or "class Lamp" in str(caught.value)
+    assert str(caught.value).startswith(f"{file}: class Lamp")
     for word in words:
         assert word in str(caught.value)
 

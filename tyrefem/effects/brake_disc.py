@@ -42,9 +42,9 @@ class BrakeDisc(Effect):
     TO_AIR: ClassVar[float] = 5.0
 
     power: Annotated[float, Prior("W", "heat of braking while the wheel turns", 500.0, 0.0, 1e5)] = 0.0
-    mass: Annotated[float, Prior("kg", "mass of the disc", 4.0, 1.0, 100.0, null=8.0, start=8.0, amplitude=False)] = 8.0
+    mass: Annotated[float, Prior("kg", "mass of the disc", 4.0, 1.0, 100.0, start=8.0, amplitude=False)] = 8.0
     to_rim: Annotated[
-        float, Prior("W/K", "conductance from disc to rim", 1.5, 0.2, 50.0, null=2.5, start=2.5, amplitude=False)
+        float, Prior("W/K", "conductance from disc to rim", 1.5, 0.2, 50.0, start=2.5, amplitude=False)
     ] = 2.5
 
     def state_rates(self, tyre: Tyre, t: float, state: Values, temperatures: TemperaturesOfTyre) -> Values:

@@ -25,9 +25,9 @@ class BrakeHeat(Effect):
     )
 
     warmer_by: Annotated[float, Prior("delta_degC", "warming of the rim in the end", 30.0, 0.0, 300.0)] = 0.0
-    lag: Annotated[
-        float, Prior("s", "time in which it warms", 200.0, 30.0, 3600.0, null=300.0, start=300.0, amplitude=False)
-    ] = 300.0
+    lag: Annotated[float, Prior("s", "time in which it warms", 200.0, 30.0, 3600.0, start=300.0, amplitude=False)] = (
+        300.0
+    )
     begins: Annotated[
         float, Prior("s", "time at which the brake begins to warm it", 300.0, 0.0, 36000.0, start=0.0, amplitude=False)
     ] = 0.0

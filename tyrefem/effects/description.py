@@ -10,7 +10,6 @@ from tyrefem.effects.effect import FAMILIES, PORTS, Effect
 if TYPE_CHECKING:
     from pydantic.fields import FieldInfo
 
-    from tyrefem.effects.effect import Prior
 
 #: Heading of the columns of `parameter_rows`.
 COLUMNS = ("parameter", "meaning", "not there at", "allowed", "prior sd")
@@ -23,7 +22,7 @@ def by_family(effects: dict[str, type[Effect]]) -> dict[str, list[type[Effect]]]
 
 
 def equation(effect: type[Effect]) -> str:
-    """The effect's equation: the first line of the class's docstring."""
+    """The effect's equation: the class's docstring, in one line."""
     return " ".join(inspect.cleandoc(effect.__doc__ or "").split()).replace("``", "")
 
 
@@ -37,7 +36,7 @@ def parameter_rows(effect: type[Effect]) -> list[list[str]]:
     rows = []
     for parameter in effect.parameters():
         prior = parameter.prior
-        begin = prior.text(prior.null) if prior.amplitude else f"(shape; starts at {prior.text(_start(prior))})"
+        begin = prior.text(prior.null) if prior.amplitude else f"(shape; starts at {prior.text(prior.origin)})"
         bounds = f"{prior.text(prior.low)} to {prior.text(prior.high)}"
         rows.append([parameter.name, prior.meaning, begin, bounds, prior.text(prior.scale)])
     numbers = {parameter.name for parameter in effect.parameters()}
@@ -46,10 +45,6 @@ def parameter_rows(effect: type[Effect]) -> list[list[str]]:
             default = "" if field.is_required() else f"default: {field.default}"
             rows.append([name, field.description or "choice", "", default, ""])
     return rows
-
-
-def _start(prior: Prior) -> float:
-    return prior.null if prior.start is None else prior.start
 
 
 def example(effect: type[Effect]) -> str:

@@ -51,9 +51,10 @@ class Prior:
     Parameters
     ----------
     unit, meaning : unit in a study file; meaning in one line.
-    scale : standard deviation of the prior about ``null``, the value at which the effect is absent.
+    scale : standard deviation of the prior about `origin`.
     low, high : physical bounds (for most parameters, on the sign).
-    start : start value of a fit, for a shape parameter (``amplitude`` False).
+    null : value of an amplitude at which the effect is absent.
+    start : of a shape parameter (``amplitude`` False) in place of ``null``: start value of a fit, and its default.
     written : unit of a study file, if it is not ``unit``: ``deg`` for ``rad``.
 
     >>> Prior("m", "along the meridian", 4e-3, -0.02, 0.02, written="mm").text(0.0025)

@@ -28,9 +28,9 @@ class PressureRise(Effect):
     signature: ClassVar[Signature] = Signature(signs={"crown-inner": -1, "sidewall-inner": -1})
 
     rise: Annotated[float, Prior("1", "rise of the gauge pressure over the drive's, in the end", 0.15, 0.0, 0.8)] = 0.0
-    lag: Annotated[
-        float, Prior("s", "time in which it rises", 300.0, 30.0, 3600.0, null=400.0, start=400.0, amplitude=False)
-    ] = 400.0
+    lag: Annotated[float, Prior("s", "time in which it rises", 300.0, 30.0, 3600.0, start=400.0, amplitude=False)] = (
+        400.0
+    )
 
     def heat_factor(self, tyre: Tyre, zone: str, x: Array, t: float, T: Array) -> Factor:
         """(D'/D)^2 at the risen pressure."""

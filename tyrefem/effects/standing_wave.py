@@ -36,7 +36,7 @@ class StandingWave(Effect):
 
     gain: Annotated[float, Prior("1", "relative heat added at twice the critical speed", 4.0, 0.0, 40.0)] = 0.0
     critical_speed: Annotated[
-        float, Prior("m/s", "speed of the onset", 15.0, 15.0, 150.0, null=50.0, start=50.0, amplitude=False)
+        float, Prior("m/s", "speed of the onset", 15.0, 15.0, 150.0, start=50.0, amplitude=False)
     ] = 50.0
 
     def heat_factor(self, tyre: Tyre, zone: str, x: Array, t: float, T: Array) -> Factor:
