@@ -49,7 +49,7 @@ the [table](evidence/tables/effect-parameters.csv). A *shape* does nothing while
 judgement, not a measurement. Pictures show what one sd changes in the readings of `example-validation` (22x5.5 8PR,
 2700 lbf, 83 psi, 20 mph for 600 s, then at rest; noise of a thermocouple 0.5 K).
 
-Not on this page are `heat-shape`, `film-scale`, `missing-heat`, `missing-flux` and `missing-loss`. A diagnosis
+Not on this page are CALIBRATION. A diagnosis
 uses them for corrections and for heat of unknown origin; they state no cause. `tyrefem show effect NAME` explains each.
 
 ## An effect in some runs only
@@ -69,7 +69,7 @@ warmer_by = "25 delta_degC"
   do not have is an error.
 - `tyrefem run` follows no measured run: it leaves the effect out, and the report says so. With the run's name it acts:
   `tyrefem run STUDY --set run=run-2`. The same holds for sweeps, campaigns and real-time models.
-- A diagnosis tries `hot-road`, `sun`, `wind`, `wet-road` and `ambient-drift` also in each fitted run alone, as
+- A diagnosis tries OF_THE_DAY also in each fitted run alone, as
   `hot-road in run-2`. An effect of your own takes part with `of_the_day: ClassVar[bool] = True`.
 
 ## An effect of your own
@@ -105,11 +105,14 @@ the law of the heat, its amplitude and standard deviation, and the source "infer
 `Prior` takes unit, meaning, sd, lower and upper bound. A parameter without a value at which the effect is absent, such
 as a place or a period, has a start of the fit, which is its default:
 `Prior("s", "period", 50.0, 1.0, 1e4, start=60.0, amplitude=False)`. The method is one of the ports of
-`tyrefem.effects.Effect`; `tyrefem/effects/tyre.py` lists what a port may ask of its `tyre`. A choice (a sensor, a
-side) is a field with `Field(description=..., examples=[...])`. `of_drive: ClassVar[bool] = True` says that films,
+`tyrefem.effects.Effect`; `tyrefem/effects/tyre.py` lists what a port may ask of its `tyre`. The class's docstring is
+the equation that commands and pages show. A choice (a sensor, a side) is a field with
+`Field(description=..., examples=[...])`. `of_drive: ClassVar[bool] = True` says that films,
 surroundings and rim depend on time through the drive alone: reduced models then evaluate the effect once per phase.
 `of_place: ClassVar[bool] = True` says that `heat_factor` depends on the place alone: it is then evaluated once per set
-of points. A port that jumps within a phase states when: `jumps: ClassVar[tuple[float, ...]] = (300.0,)`, in seconds.
+of points. A port that jumps within a phase states when, in seconds of the drive:
+`jumps: ClassVar[tuple[float, ...]] = (300.0,)`; a time that is a parameter by a property `jumps`, as
+`tyrefem/effects/missing_flux.py` does.
 
 ## An effect with a state of its own
 
@@ -134,10 +137,17 @@ def _shown(effect: type[Effect]) -> bool:
 def page() -> str:
     """The text of docs/effects.md."""
     families = by_family({name: effect for name, effect in catalogue().items() if _shown(effect)})
-    parts = [INTRODUCTION]
+    parts = [INTRODUCTION.replace("CALIBRATION", _names("calibration")).replace("OF_THE_DAY", _names("of_the_day"))]
     for family, members in families.items():
         parts += [f"## Family: {family}\n", *(_entry(effect) for effect in members)]
     return "\n".join(parts)
+
+
+def _names(flag: str) -> str:
+    """The shipped effects whose class says so, as a list in words."""
+    shipped = {name: effect for name, effect in catalogue().items() if effect.__module__.startswith("tyrefem.")}
+    *names, last = [f"`{name}`" for name, effect in shipped.items() if getattr(effect, flag)]
+    return f"{', '.join(names)} and {last}"
 
 
 def _entry(effect: type[Effect]) -> str:

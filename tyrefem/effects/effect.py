@@ -160,7 +160,8 @@ class Effect(Card):
     of_place: ClassVar[bool] = False
     #: False if its addend to the heat or factor on it is the same at all temperatures: it is then kept by time.
     heat_of_temperature: ClassVar[bool] = True
-    #: Times within a phase at which a port jumps, s: simulations with fixed steps end a step there.
+    #: Times of the drive, within a phase, at which a port jumps, s: simulations end a step there. A property, if a
+    #: parameter says when.
     jumps: ClassVar[tuple[float, ...]] = ()
     #: States of the effect during a run, by name; its ports read them by ``tyre.state(self, name, t)``.
     states: ClassVar[Mapping[str, EffectState]] = {}

@@ -20,7 +20,8 @@ SENSORS: Mapping[str, Any] = {
 class Signature:
     """Changes of the study `STUDY` that show an effect, and the signs of its changes of readings.
 
-    Default: the unchanged study, the effect's first variant, any sign.
+    Default: the unchanged study, the effect's first variant, any sign. The picture has the study's drive, 600 s and
+    600 s at rest; the contracts in tests/effects have 200 s and 40 s at rest, in which the effect must show too.
 
     Parameters
     ----------

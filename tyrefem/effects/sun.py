@@ -10,7 +10,7 @@ from tyrefem.effects.tyre import Tyre
 
 
 class Sun(Effect):
-    """Flux  absorbed  through tread and outer sidewall, mean over the turning surface."""
+    """Flux ``absorbed`` through tread and outer sidewall, mean over the turning surface."""
 
     name: ClassVar[str] = "sun"
     family: ClassVar[str] = "boundary"

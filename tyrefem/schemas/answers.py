@@ -1,7 +1,7 @@
 """Keys of every command's answer in JSON: what `--json` prints, command by command.
 
-A line is ``key: "kind: words"``. Kinds: text, number, integer, truth, list, table; ``?`` may be null. A key that ends
-with ``*`` may be missing. Units stand at the end of keys: ``load_N``.
+A line is ``key: "kind: words"``. Kinds: text, number, integer, boolean, list, table, written (a file as written); ``?``
+may be null. A key that ends with ``*`` may be missing. Units stand at the end of keys: ``load_N``.
 """
 
 from __future__ import annotations

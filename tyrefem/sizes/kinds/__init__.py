@@ -1,6 +1,7 @@
 """One file per kind of tyre: rules that turn a size into named numbers and draw its section.
 
-A kind is a module named as the kind, with `-` for `_`, and a function ``draw(size, rules)``.
+A kind is a module with a function ``draw(size, rules)``, named as the kind with `_` for its `-`.
+`tyrefem.sizes.designation.parse_size` says which kind a text is.
 """
 
 from __future__ import annotations
