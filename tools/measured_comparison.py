@@ -50,11 +50,6 @@ class Comparison:
     goal: float
     goal_met: str
 
-    @property
-    def u_computed(self) -> float:
-        """Standard uncertainty of the computed value, in its unit: numbers and inputs together."""
-        return math.hypot(self.u_numerical, self.u_input) / 100 * abs(self.measured)
-
 
 @functools.cache
 def table(name: str) -> tuple[dict[str, str], ...]:

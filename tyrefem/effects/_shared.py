@@ -132,6 +132,12 @@ class OfSensor(Effect):
         return tuple({"sensor": name} for name in study.sensors)
 
 
+def needs_lumped_rim(study: StudyOfTyre) -> str | None:
+    """Why heat into the rim does nothing in a study; None: its rim is lumped."""
+    lumped = study.card.boundaries.rim.law == "lumped"
+    return None if lumped else "only a lumped rim takes up heat; use 'brake-heat'"
+
+
 def half_width(tyre: Tyre) -> tuple[float, float]:
     """z of the two shoulders on the meridian, m."""
     line = tyre.study.section.line

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, ClassVar
 
+from tyrefem.effects._shared import needs_lumped_rim
 from tyrefem.effects.effect import Effect, Prior
 from tyrefem.effects.signature import Signature
 from tyrefem.effects.tyre import StudyOfTyre, Tyre
@@ -38,5 +39,4 @@ class BrakePower(Effect):
     @classmethod
     def refusal(cls, study: StudyOfTyre) -> str | None:
         """Only a lumped rim takes up heat."""
-        lumped = study.card.boundaries.rim.law == "lumped"
-        return None if lumped else "only a lumped rim takes up heat; use 'brake-heat'"
+        return needs_lumped_rim(study)

@@ -42,6 +42,16 @@ def region_outlines(section: Layered, region: str, spacing: float) -> list[Array
     return polygons
 
 
+def label_place(section: Layered, region: str) -> Array:
+    """Point (r, z), m, for the name of a region: half through its longest piece, at the middle of its length or, not
+    to lie on the name of a neighbour in another layer, beyond it."""
+    piece = max((p for p in section.pieces if p.region == region), key=lambda p: p.end - p.start)
+    s = piece.start + (0.62 if piece.layer else 0.5) * (piece.end - piece.start)
+    faces = section.interfaces(s)
+    depth = float((faces[piece.layer] + faces[piece.layer + 1]) / 2 - faces[0])
+    return np.ravel(section.place(s, depth))
+
+
 def boundary_lines(section: Layered, name: str, spacing: float) -> list[Array]:
     """Open polylines of a boundary."""
     length, n = section.line.length, len(section.layers)

@@ -26,8 +26,8 @@ class RigParameter:
     coordinates are N(0, spread); ``folded``: |N(0, spread)|. `value` maps the coordinate x ~ N(0, 1) to p.
 
     >>> k = RigParameter("tread.conductivity", "W/m/K", "log", 0.25, 0.5, PROPERTY)
-    >>> round(k.value(0.0), 3), round(k.value(k.coordinate(0.3)), 3)
-    (0.25, 0.3)
+    >>> round(k.value(0.0), 3), round(k.value(1.0), 3)
+    (0.25, 0.412)
     """
 
     name: str
@@ -49,12 +49,6 @@ class RigParameter:
         from scipy.special import ndtri
 
         return self.spread * float(-ndtri(above / 2.0))
-
-    def coordinate(self, value: float) -> float:
-        """The coordinate of a value; for ``log`` and ``linear``."""
-        if self.law == "log":
-            return math.log(value / self.centre) / self.spread
-        return (value - self.centre) / self.spread
 
     def derivative(self, x: float) -> float:
         """d value / d x."""

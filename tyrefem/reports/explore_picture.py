@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tyrefem.geometry.outlines import label_place
 from tyrefem.geometry.place_names import place
 from tyrefem.reports.figures.cells import triangles
 
@@ -85,14 +86,10 @@ def outlines(section: Any) -> list[Array]:
 
 
 def region_places(section: Any) -> list[dict[str, Any]]:
-    """Region -> the middle of its longest piece, mm."""
+    """Every region with the place of its name, mm."""
     places = []
     for region in section.regions:
-        piece = max((p for p in section.pieces if p.region == region), key=lambda p: p.end - p.start)
-        s = piece.start + (0.62 if piece.layer else 0.5) * (piece.end - piece.start)
-        faces = section.interfaces(s)
-        depth = float((faces[piece.layer] + faces[piece.layer + 1]) / 2 - faces[0])
-        r, z = np.ravel(section.place(s, depth))
+        r, z = label_place(section, region)
         places.append({"name": region, "r": float(r) * 1e3, "z": float(z) * 1e3})
     return places
 

@@ -17,7 +17,7 @@ from tyrefem.diagnose.inference.evidence import posterior
 from tyrefem.diagnose.layout.linear_layout import LinearLayout
 from tyrefem.diagnose.unknowns.candidates import Members
 from tyrefem.diagnose.unknowns.unknown import Unknown
-from tyrefem.diagnose.verdicts.verdict import IDENTIFIED, Judgement
+from tyrefem.diagnose.verdicts.verdict import Judgement
 
 Array = NDArray[np.float64]
 #: Probabilities that an effect acts are kept from this one on.
@@ -55,11 +55,6 @@ class QuickCase(Brief):
     amplitude_ranks: tuple[float, ...]
     base_rank: float
     p_value: float
-
-    @property
-    def named_right(self) -> bool:
-        """Whether the verdict "identified" names effects that all act."""
-        return self.verdict == IDENTIFIED and self.right
 
     @classmethod
     def of_row(cls, row: Mapping[str, Any]) -> QuickCase:

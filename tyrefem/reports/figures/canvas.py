@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tyrefem.geometry.outlines import label_place
 from tyrefem.reports.figures.style import (
     FONT,
     INK,
@@ -145,15 +146,10 @@ def draw_outlines(axes: Axes, section: Section, *, color: str = INK, width: floa
 
 
 def region_labels(section: Section) -> list[Label]:
-    """Names of the regions, at the middle of their longest piece on the left side, from crown to bead."""
+    """Names of the regions on the left side, from crown to bead."""
     labels = []
     for region in section.regions:
-        piece = max((p for p in section.pieces if p.region == region), key=lambda p: p.end - p.start)
-        # Not at the piece's middle if a neighbour in another layer has its label there.
-        s = piece.start + (0.62 if piece.layer else 0.5) * (piece.end - piece.start)
-        faces = section.interfaces(s)
-        depth = float((faces[piece.layer] + faces[piece.layer + 1]) / 2 - faces[0])
-        x, y = millimetres(section.place(s, depth))
+        x, y = millimetres(label_place(section, region))
         labels.append(Label(plain(region), -float(x), float(y)))
     return sorted(labels, key=lambda label: -label.y)
 
