@@ -17,6 +17,7 @@ from tyrefem import library
 from tyrefem.cards import merged, read_toml
 from tyrefem.errors import InputError
 from tyrefem.materials.card import MaterialCard
+from tyrefem.output.folder import checksum
 from tyrefem.quantity import parse
 from tyrefem.quantity.pattern import EXAMPLES, FORMS, NAMES, pattern
 from tyrefem.schemas.files import FILES
@@ -64,10 +65,13 @@ def problem(schema: Any, data: Any) -> Any:
 
 
 def test_the_shipped_schemas_are_those_of_the_cards(made: dict[str, str]) -> None:
-    """After a change of cards, effects or laws: tyrefem schema."""
+    """After a change of cards, effects, laws or answers: tyrefem schema."""
     assert {file.name for file in (ROOT / "schemas").glob("*.json")} == {*made, "summary.json"}
     for name, text in made.items():
         assert (ROOT / "schemas" / name).read_text(encoding="utf-8") == text, f"run 'tyrefem schema': {name} is old"
+    # Else the command takes them for files of somebody else, and refuses to replace them in a fresh clone.
+    written = json.loads((ROOT / "schemas/summary.json").read_text(encoding="utf-8"))["checksums"]
+    assert {name: checksum(ROOT / "schemas" / name) for name in made} == written, "run 'tyrefem schema --force'"
     assert (ROOT / ".taplo.toml").read_text(encoding="utf-8") == settings("schemas")
 
 
