@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -532,6 +533,17 @@ def test_names_of_answers_are_known_before_anything_runs(swept: Sweep, tyre: Stu
     text = {"hottest_region"}
     assert set(answer_names(tyre, 35.0)) == set(swept.answers) - text
     assert TIME_TO not in answer_names(tyre)
+
+
+def test_the_page_of_sweeps_names_every_answer(tyre: Study) -> None:
+    """Its table has REGION, SENSOR and WAY for the names that a study gives."""
+    page = (Path(__file__).parents[2] / "docs/sweeps.md").read_text(encoding="utf-8")
+    table = page.partition("## Answers")[2].partition("`sweep.csv`")[0]
+    written = [re.sub("REGION|SENSOR|WAY", ".+", name) for name in re.findall(r"`([\w-]+)`", table)]
+    lumped = tyre.replace({"boundaries.rim": {"law": "lumped", "mass": "9 kg", "cooling": "2 W/K", "air": "0.5 W/K"}})
+    fatigue = study("passenger-205-55r16", {"output.life": True})
+    names = {name for each in (lumped, fatigue) for name in answer_names(each, 35.0)}
+    assert {name for name in names if not any(re.fullmatch(pattern, name) for pattern in written)} == set()
 
 
 def test_no_answer_in_words_repeats_its_unit(tyre: Study) -> None:
