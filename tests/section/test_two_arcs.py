@@ -82,12 +82,6 @@ def test_nearest_is_exact_to_a_nanometre() -> None:
         assert np.abs(y_found - y).max() < 1e-12
 
 
-def test_widest_point_of_a_circle() -> None:
-    line = TwoArcs(0.3, 0.1, 0.1, 0.06, 0.2)
-    assert line.max_width == pytest.approx(0.2, rel=1e-12)
-    assert TwoArcs(0.3, 0.1, 0.1, 0.06, 0.1).max_width == pytest.approx(0.2 * np.sin(1.0), rel=1e-12)
-
-
 @pytest.mark.parametrize(
     ("numbers", "field", "words"),
     [

@@ -6,7 +6,7 @@ import pytest
 
 from tyrefem.errors import InputError
 from tyrefem.sizes import parse_size
-from tyrefem.sizes.data_book import data_book, of_designation
+from tyrefem.sizes.data_book import data_book, row_of
 from tyrefem.sizes.section import draw_size
 
 pytestmark = pytest.mark.fast
@@ -28,18 +28,18 @@ pytestmark = pytest.mark.fast
     ],
 )
 def test_a_size_in_other_spelling_has_its_row(text: str, name: str) -> None:
-    row = of_designation(text)
+    row = row_of(parse_size(text))
     assert row is not None
     assert row.size == name
 
 
 @pytest.mark.parametrize("text", ["22x5.5-8 8PR", "22x5.5R12", "24x7.7-10 60PR", "B44.5x16.5-21", "22x8"])
 def test_another_rim_build_rating_or_prefix_has_none(text: str) -> None:
-    assert of_designation(text) is None
+    assert row_of(parse_size(text)) is None
 
 
 def test_every_row_is_found_by_its_name() -> None:
-    assert all(of_designation(row.size) is not None for row in data_book())
+    assert all(row_of(parse_size(row.size)) is not None for row in data_book())
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,8 @@ from tyrefem.geometry.meshing import build
 from tyrefem.inputs.study import StudyData
 from tyrefem.mechanics.solid.inflation import inflate
 from tyrefem.sizes import draw_size
-from tyrefem.sizes.data_book import of_designation
+from tyrefem.sizes.data_book import row_of
+from tyrefem.sizes.designation import parse_size
 from tyrefem.sizes.growth import before_inflation, stretched
 from tyrefem.sizes.meridian import SizedMeridian
 
@@ -29,7 +30,7 @@ def inflated_line() -> tuple[SizedMeridian, float, float]:
 @pytest.mark.parametrize("size", ["22x5.5 8PR", "40x14 24PR"])
 def test_the_inflated_tyre_has_the_size_of_the_data_book(size: str) -> None:
     """By finite elements: within the least and largest diameter; the width within 1 % of the largest."""
-    row, rules = of_designation(size), draw_size(size).rules
+    row, rules = row_of(parse_size(size)), draw_size(size).rules
     assert row is not None
     drive = {"speed": "60 km/h", "load": rules["rated_load"].text, "pressure": rules["rated_pressure"].text,
              "duration": "60 s", "ambient": "25 degC"}  # fmt: skip

@@ -1,4 +1,4 @@
-"""The meridian (reference line) of a section as two circular arcs, as in the NASA report."""
+"""The meridian (reference line) of a section: what every line has, and two circular arcs as in the NASA report."""
 
 from __future__ import annotations
 
@@ -16,18 +16,34 @@ Array = NDArray[np.float64]
 
 
 class Line(Protocol):
-    """A meridian (r, z) by arc length s, symmetric about the crown; the crown is s = 0, z = 0."""
+    """A meridian (r, z) by arc length s, symmetric about the crown; the crown is s = 0, z = 0. Lengths in m.
+
+    Arrays have any leading shape: ``s`` (...), points (..., 2). Negative ``s`` is the other side.
+    """
 
     @property
-    def length(self) -> float: ...
+    def length(self) -> float:
+        """From the crown to the bead."""
+
     @property
-    def breaks(self) -> tuple[float, ...]: ...
+    def breaks(self) -> tuple[float, ...]:
+        """Stations on the side s > 0 where the line is less smooth, as where the curvature jumps."""
+
     @property
-    def shoulder_s(self) -> float: ...
-    def position(self, s: ArrayLike) -> Array: ...
-    def normal(self, s: ArrayLike) -> Array: ...
-    def curvature(self, s: ArrayLike) -> Array: ...
-    def nearest(self, points: ArrayLike) -> tuple[Array, Array]: ...
+    def shoulder_s(self) -> float:
+        """From the crown to the shoulder."""
+
+    def position(self, s: ArrayLike) -> Array:
+        """(r, z), (..., 2); beyond the bead the line continues."""
+
+    def normal(self, s: ArrayLike) -> Array:
+        """Unit normal outwards, (..., 2)."""
+
+    def curvature(self, s: ArrayLike) -> Array:
+        """1/m, (...), positive where the centre lies inside the tyre."""
+
+    def nearest(self, points: ArrayLike) -> tuple[Array, Array]:
+        """Foot (s, y) of points: arc length, and signed distance along the outward normal, (...) each."""
 
 
 @dataclass(frozen=True)
@@ -112,12 +128,6 @@ class TwoArcs(PickledFields):
         """(x_B, y_B) of the bead in the report's axes: axial distance, radius [m]."""
         r, z = self.position(self.length)
         return float(z), float(r)
-
-    @property
-    def max_width(self) -> float:
-        """Twice the largest axial distance of the line from the mid plane [m]."""
-        widest = self.shoulder_s + self.sidewall_radius * (np.pi / 2 - self.shoulder_angle)
-        return 2 * float(self.position(min(self.length, widest))[1])
 
     @cached_property
     def _centres(self) -> tuple[Array, Array]:

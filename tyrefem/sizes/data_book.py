@@ -110,8 +110,3 @@ def _numbers(size: TyreSize) -> tuple[str, int, int]:
 
 def _micrometres(length: float) -> int:
     return round(length * 1e6)
-
-
-def of_designation(text: str) -> DataBookRow | None:
-    """`row_of` of a size as text."""
-    return row_of(parse_size(text))
