@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import shlex
 from collections.abc import Callable
 from pathlib import Path
@@ -101,6 +102,21 @@ def test_a_failing_check_has_exit_code_2(write: Write, capfd: pytest.CaptureFixt
     assert main(["check", str(file), "--json"]) == 2
     contracts = json.loads(capfd.readouterr().out)
     assert (contracts["failed"], contracts["contracts"]) == (2, 4)
+
+
+def test_an_effect_later_than_the_trial_is_told_what_shows_it(write: Write, capfd: pytest.CaptureFixture[str]) -> None:
+    late = ("return self.shine", "return self.shine if t > 300 else 0.0")
+    file = write("effect", late)
+    assert main(["check", str(file)]) == 2
+    out = capfd.readouterr().out
+    assert "no reading changes in this drive of 150 s; name a study that shows it (--study NAME), or say" in out
+    hint = re.search(r"(signature = )(Signature\(.*?\)), from (tyrefem[.\w]+)", out)
+    assert hint is not None
+    imported = f"from {hint[3]} import Signature\nfrom tyrefem.effects import"
+    line = f"signature: ClassVar[Signature] = {hint[2]}\n\n    shine:"
+    write("effect", late, ("from tyrefem.effects import", imported), ("shine:", line))
+    assert main(["check", str(file)]) == 0
+    assert main(["check", str(write("effect", late)), "--study", "example-validation"]) == 0
 
 
 def test_a_copy_of_a_loaded_file_is_checked(write: Write, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:

@@ -213,4 +213,8 @@ def _shows(study: StudyData, typical: StudyData) -> str | None:
     changed = (run(typical).readings - run(study).readings).drop(columns="time_s").to_numpy(dtype=float)
     if np.abs(changed).max() > 0:
         return None
-    return "no reading changes; does another study show it? set signature = Signature(changes=...)"
+    return (
+        f"no reading changes in this drive of {study.card.drive.end:g} s; name a study that shows it (--study NAME), "
+        "or say in the class what shows it: signature = Signature(changes={'drive.phases.rolling.duration': '600 s'}), "
+        "from tyrefem.effects.signature"
+    )

@@ -21,7 +21,7 @@ class Signature:
     """Changes of the study `STUDY` that show an effect, and the signs of its changes of readings.
 
     Default: the unchanged study, the effect's first variant, any sign. The picture has the study's drive, 600 s and
-    600 s at rest; the contracts in tests/effects have 200 s and 40 s at rest, in which the effect must show too.
+    600 s at rest; tests/effects have 200 s and 40 s, `tyrefem check` 120 s and 30 s, in which it must show too.
 
     Parameters
     ----------
