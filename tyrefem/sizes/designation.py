@@ -196,7 +196,7 @@ def _metric(text: str, match: re.Match[str]) -> TyreSize:
     if of_race is not None:
         raise InputError(
             f"'{text}' gives the outer diameter, {series:g} mm, as race tyres do, where the series belongs; write "
-            f'{match["width"]}/{of_race}R{match["rim"]} with parameters = {{ outer_diameter = "{series:g} mm" }} '
+            f'{_width_of_cars(match["width"])}/{of_race}R{match["rim"]} with parameters = {{ outer_diameter = "{series:g} mm" }} '
             "(new section, new study: --set)",
             field="size",
         )
