@@ -196,8 +196,8 @@ def _metric(text: str, match: re.Match[str]) -> TyreSize:
     if of_race is not None:
         metric = f"{_width_of_cars(match['width'])}/{of_race}R{match['rim']}"
         raise InputError(
-            f"'{text}' gives the outer diameter, {series:g} mm, as race tyres do, where the series belongs; write {metric} "
-            f"with parameters = {{ outer_diameter = '{series:g} mm' }} (new section, new study: --set)",
+            f"'{text}' gives the outer diameter, {series:g} mm, as race tyres do, where the series belongs; write "
+            f"{metric} with parameters = {{ outer_diameter = '{series:g} mm' }} (new section, new study: --set)",
             field="size",
         )
     if build != "R":
