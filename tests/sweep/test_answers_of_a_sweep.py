@@ -212,7 +212,7 @@ def test_tornado_moves_every_number_alone(tyre: Study) -> None:
 def test_cases_in_memory_are_refused_in_one_line(tyre: Study) -> None:
     table = pd.DataFrame({"name": ["slow", "fast"], "drive.speed [mph]": [10, 20]})
     for cases in (table, [{"drive.speed": "10 mph"}], b"cases.csv"):
-        with pytest.raises(InputError, match="^cases: must be the path of a CSV file or workbook, not a ") as caught:
+        with pytest.raises(InputError, match=r"^cases: must be the path of a CSV file or workbook, not a ") as caught:
             plan_of(tyre, {}, sample="list", cases=cases)
         assert "\n" not in str(caught.value)
 
