@@ -49,6 +49,22 @@ def test_marks_on_the_wall_leave_kind_width_and_load() -> None:
     assert parse_size("22x5.5 8PR TL").ply_rating == 8
 
 
+@pytest.mark.parametrize(
+    ("size", "metric", "diameter"),
+    [
+        ("305/680R18", "305/35R18", "680 mm"),
+        ("180/550 R13", "185/60R13", "550 mm"),
+        ("300/710-18", "305/40R18", "710 mm"),
+    ],
+)
+def test_a_race_tyre_names_its_metric_size(size: str, metric: str, diameter: str) -> None:
+    with pytest.raises(
+        InputError, match=f"gives the outer diameter, {diameter}, .*; write {metric} with .*outer_diameter"
+    ):
+        parse_size(size)
+    assert parse_size(metric).kind == "passenger"
+
+
 @pytest.mark.parametrize("size", ["10.00-20", "12.00-20 18PR", "8.50-10 8PR", "6.50-8", "7.00-16LT"])
 def test_bias_sizes_of_width_and_rim_are_refused_as_such(size: str) -> None:
     with pytest.raises(InputError, match=r"is a bias tyre of which the size gives width and rim alone"):

@@ -179,8 +179,27 @@ def looks_like_size(text: object) -> bool:
     return bool(re.match(f"(?:{usual}|{other})", text, re.IGNORECASE))
 
 
+def _series_of_race_tyre(width: float, outside: float, rim: float) -> int | None:
+    """The series to the next five per cent, if a number is an outer diameter, mm; width in mm, rim in inches."""
+    series = 100 * (outside - rim * INCH / MM) / 2 / width
+    return 5 * round(series / 5) if outside > 100 and 20 <= series <= 100 else None
+
+
+def _width_of_cars(width: str) -> str:
+    """The width of three digits in the same ten, mm, that ends in 5."""
+    return str(max(int(width) // 10 * 10 + 5, 105))
+
+
 def _metric(text: str, match: re.Match[str]) -> TyreSize:
     build, rim, series = match["build"].upper(), float(match["rim"]), float(match["series"])
+    of_race = _series_of_race_tyre(float(match["width"]), series, rim)
+    if of_race is not None:
+        metric = f"{_width_of_cars(match['width'])}/{of_race}R{match['rim']}"
+        raise InputError(
+            f"'{text}' gives the outer diameter, {series:g} mm, as race tyres do, where the series belongs; write "
+            f"{metric} with parameters = {{ outer_diameter = '{series:g} mm' }} (new section, new study: --set)",
+            field="size",
+        )
     if build != "R":
         raise InputError(
             f"'{text}' is a bias-ply road tyre, which has no rules here; radials are written "
@@ -201,8 +220,7 @@ def _metric(text: str, match: re.Match[str]) -> TyreSize:
         whole = f"LT{text.removeprefix(match['service'] or '').strip()}"
         raise InputError(f"'{text}': load ranges belong to light-truck sizes, which are written {whole}", field="size")
     if kind == "passenger" and int(match["width"]) % 10 != 5:
-        # The width of three digits in the same ten.
-        near = str(max(int(match["width"]) // 10 * 10 + 5, 105))
+        near = _width_of_cars(match["width"])
         raise InputError(
             f"'{text}' is no car size, whose widths end in 5, but one of motorcycles or tractors, which have no rules "
             f"here; nearest: {text.replace(match['width'], near, 1)}",
