@@ -21,11 +21,11 @@ ESTIMATE = "estimate: ordinary practice"
 LOW_SERIES = 0.6
 #: From this nominal width on, m, a truck tyre is a wide-base single.
 WIDE_BASE = 0.4
-#: Load of a tyre of 100 l, kg, and the exponent of other volumes: 20 single loads from 215/75R17.5 126 to 445/65R22.5 169.
+#: Load of a tyre of 100 l, kg, and the exponent of other volumes: 20 single loads, 215/75R17.5 126 to 445/65R22.5 169.
 LOAD_AT, LOAD_EXPONENT = 5400.0, 0.74
 LOAD_WORDS = (
-    "5400 kg x (width x height x mean diameter / 100 l)^0.74, within 16 % of the load indices of 20 sizes (from memory); "
-    "write the load index of yours behind the size"
+    "5400 kg x (width x height x mean diameter / 100 l)^0.74, within 16 % of the load indices of 20 sizes (from "
+    "memory); write the load index of yours behind the size"
 )
 #: Modulus of their bead between plies and flange in plane strain, Pa, and its source.
 BEAD_MODULUS = (56e6, "estimate: four times 14 MPa of shear, that of fillers")
