@@ -43,7 +43,7 @@ def rings(power: float = 50.0, count: int = 41, exponent: float = 1.0) -> RingWe
 
 
 @pytest.mark.fast
-def test_rings_with_negative_friction_power_are_said() -> None:
+def test_rings_with_negative_friction_power_are_mentioned() -> None:
     """They count as not worn, so that the wear of a coarse mesh is too high."""
     wear = rings()
     assert unresolved(wear) == []

@@ -27,7 +27,7 @@ FILES = ("wear.csv", "wear.png", "worn-section.toml")
 ABOUT = "wear at the first profile, not compared with any measured tread"
 #: mm per 1000 km in m per km.
 MILLIMETRES = 1e-6
-#: Negative friction power over the positive that is said: its rings count as not worn.
+#: Negative friction power over the positive that is mentioned: its rings count as not worn.
 NEGATIVE = 0.01
 
 
