@@ -23,19 +23,21 @@ class InputError(ValueError):
 
     Parameters
     ----------
-    message : what is wrong and what is allowed.
+    message : what is wrong and what is allowed; line breaks, as of a table in it, become spaces.
     field : dotted name of the field, e.g. ``drive.speed``.
     file : the file with the input.
 
     >>> print(InputError("must be positive", field="drive.speed", file="study.toml"))
     study.toml: drive.speed: must be positive
+    >>> print(InputError("must be a number, not [[1 2]\\n [3 4]]", field="slip"))
+    slip: must be a number, not [[1 2] [3 4]]
     >>> MissingLibraryError("needs gmsh").within(field="mesh.mesher")
     MissingLibraryError('mesh.mesher: needs gmsh')
     """
 
     def __init__(self, message: str, *, field: str | None = None, file: str | Path | None = None) -> None:
-        self.message, self.field, self.file = message, field, file
-        super().__init__(": ".join(str(part) for part in (file, field, message) if part))
+        self.message, self.field, self.file = _in_one_line(message), field, file
+        super().__init__(": ".join(str(part) for part in (file, field, self.message) if part))
 
     def within(self, *, field: str | None = None, file: str | Path | None = None) -> InputError:
         """The same error, of the same type, with the names of an enclosing field and file."""
@@ -51,6 +53,10 @@ class InputError(ValueError):
         placed.__setstate__(vars(self))
         InputError.__init__(placed, self.message, field=field, file=file)
         return placed
+
+
+def _in_one_line(text: str) -> str:
+    return " ".join(text.split()) if "\n" in text else text
 
 
 class OutputError(InputError):

@@ -146,6 +146,14 @@ def test_a_raised_digit_is_no_number_of_an_entry():
         ({"mesh.through": True}, r"mesh\.through: must be a number, not True$"),
         ({"plan.drives": False}, r"plan\.drives: must be a number, not False$"),
         ({"materials.tread.elasticity": "yeoh"}, r"materials\.tread\.elasticity: must be a table of keys, not 'yeoh'$"),
+        (
+            {"materials.tread.conductivity": "0.3 W/m/K"},
+            r"conductivity: .* not '0.3 W/m/K'; its number has the key 'value'$",
+        ),
+        (
+            {"materials.tread.loss_tangent": 0.2},
+            r"materials\.tread\.loss_tangent: .* not 0.2; its number has the key 'value'$",
+        ),
     ],
 )
 def test_a_value_of_another_kind(change: dict[str, object], message: str) -> None:

@@ -73,7 +73,8 @@ def test_a_table_with_other_names_of_columns(
     renamed = ["--rename", "Dauer=time [mm:ss]", "--rename", "T1=crown", "--ignore", "room"]
     assert main(["check", "logger.csv", *renamed]) == 0
     assert "1 run, 2 readings of crown" in capfd.readouterr().out
-    assert "--ignore: goes with a measured table" in refused("check", "nasa-tread", "--ignore", "room")
+    words = refused("check", "nasa-tread", "--ignore", "room")
+    assert "--ignore: goes with a measured table; in a study both are keys of its [[measured]] entries" in words
     (here / "own.py").write_text("", encoding="utf-8")
     assert "--rename: goes with a measured table" in refused("check", "own.py", "--rename", "T1=crown")
 

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+import tyrefem as tf
 from tyrefem.cli import main
 from tyrefem.cli.roll import _values
 
@@ -106,3 +107,15 @@ def test_friction_on_the_footprint_in_large_motion(here: Path, capfd: pytest.Cap
 )
 def test_bad_input_is_one_line(refused: Callable[..., str], arguments: list[str], words: str) -> None:
     assert words in refused("roll", STUDY, *arguments, *COARSE)
+
+
+def test_camber_that_pushes_to_the_wrong_side_is_a_warning(here: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    """Also where a slip angle hides it."""
+    coarse = {"mesh.size": "12 mm", "mechanics.moduli": "card", "drive.load": "5000 N"}
+    sets = [word for key, value in coarse.items() for word in ("--set", f"{key}={value}")]
+    line = ["roll", "measured-205-60r15", "--camber", "3 deg", "--slip-angle", "2 deg", "--no-pictures", "--no-vtk"]
+    assert main([*line, "--out", "out", *sets]) == 0
+    words = "at 5000 N camber pushes the tyre away from the side to which it leans; linear motion is too stiff there"
+    assert words in capfd.readouterr().err
+    study = tf.study("measured-205-60r15", coarse)
+    assert any(words in warning for warning in study.slip_curve(slip_angle=[0.02], camber=0.05).warnings)

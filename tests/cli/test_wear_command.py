@@ -35,6 +35,17 @@ def test_the_command_writes_what_it_says(here: Path, capfd: pytest.CaptureFixtur
     assert wear.mean * 1e6 == pytest.approx(summary["mean_wear_mm_per_1000_km"], rel=1e-9)
 
 
+def test_a_tread_worn_through_keeps_the_wear_that_was_computed(here: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    changes = ["--set", "mesh.size=14 mm", "--set", "materials.tread=rubber-tread-aircraft"]
+    line = ["wear", "nasa-22x5.5-8pr", *changes, "--distance", "1000000 km", "--no-pictures", "--out", "out"]
+    assert main(line) == 2
+    captured = capfd.readouterr()
+    assert "--distance: the tread is worn through" in captured.err
+    assert "mm per 1000 km on average" in captured.out
+    assert "without a worn section" in captured.out
+    assert {path.name for path in (here / "out").iterdir()} == {"wear.csv", "summary.json", "study.toml"}
+
+
 def test_without_options_the_drive_of_a_rolling_study_wears(here: Path, capfd: pytest.CaptureFixture[str]) -> None:
     tread = '{ base = "rubber-tread-aircraft", friction = { coefficient = 1.0, source = "test" } }'
     values = ["mesh.size=14 mm", f"materials.tread={tread}", "mechanics.strain=fem", "mechanics.motion=linear"]

@@ -92,6 +92,35 @@ def test_clocks_that_are_put_back_lose_no_hour(form: str) -> None:
     assert run.times.tolist() == [0.0, 1800.0, 3600.0, 5400.0]
 
 
+SECONDS = pd.to_timedelta([0.0, 0.01, 0.02, 1.5], unit="s")
+STAMPS = pd.Timestamp("2024-05-01 12:30:00", tz="Europe/Berlin") + SECONDS
+
+
+@pytest.mark.parametrize("name", [None, "utc", "Zeit", "time", "time [ms]", "Dauer"])
+@pytest.mark.parametrize("times", [SECONDS, STAMPS, STAMPS.tz_localize(None)], ids=["elapsed", "zone", "stamps"])
+def test_an_index_of_times_is_the_time_whatever_its_name(times: pd.Index, name: str | None) -> None:
+    """pandas forgets the name of an index that is computed with."""
+    frame = pd.DataFrame({"crown [degC]": [20.0, 21.0, 22.0, 23.0]}, index=pd.Index(times, name=name))
+    rename = {"Dauer": "time"} if name == "Dauer" else {}
+    (run,) = frame_lines(frame, rename).read(rename=rename).runs
+    assert run.times.tolist() == pytest.approx([0.0, 0.01, 0.02, 1.5], abs=1e-9)
+    assert run.sensors == ("crown",)
+
+
+def test_elapsed_times_in_a_column() -> None:
+    values = {"time": SECONDS, "crown [degC]": [20.0, 21.0, 22.0, 23.0]}
+    (run,) = frame_lines(pd.DataFrame(values)).read().runs
+    assert run.times.tolist() == [0.0, 0.01, 0.02, 1.5]
+    (run,) = frame_lines(pd.DataFrame(values, index=STAMPS + pd.Timedelta("1s"))).read().runs
+    assert run.times.tolist() == [0.0, 0.01, 0.02, 1.5], "the column counts, not the index beside it"
+
+
+def test_an_index_of_elapsed_times_in_words_of_other_languages() -> None:
+    frame = pd.DataFrame({"Zeit [min]": [0.0, 1.0], "crown [degC]": [20.0, 21.0]}).set_index("Zeit [min]")
+    (run,) = frame_lines(frame).read().runs
+    assert run.times.tolist() == [0.0, 60.0]
+
+
 @pytest.mark.parametrize("index", [["time [s]"], ["run"], ["run", "time [s]"]])
 def test_an_index_whose_columns_were_kept(frame: pd.DataFrame, index: list[str]) -> None:
     named = frame.assign(run="a")

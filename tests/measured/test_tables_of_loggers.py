@@ -307,3 +307,23 @@ def test_a_sensor_may_be_called_run(tmp_path: Path) -> None:
     assert run.temperatures["run"].tolist() == [25.0, 26.0]
     (again,) = read_table(run.write(tmp_path / "again.csv"))
     assert again.temperatures.equals(run.temperatures)
+
+
+def _local_times(shift: int) -> str:
+    """A table whose local clock is shifted by so many hours after a minute."""
+    rows = [f"31.03.2024;01:59:{20 * k:02d};2{k},5" for k in range(3)]
+    rows += [f"31.03.2024;{2 + shift:02d}:00:{20 * k:02d};2{k},9" for k in range(3)]
+    return "Datum;Uhrzeit;crown [degC]\n" + "\n".join(rows) + "\n"
+
+
+def test_a_clock_put_forward_by_an_hour_is_noted(tmp_path: Path) -> None:
+    """The readings after it were compared an hour too late without a word."""
+    table = tmp_path / "spring.csv"
+    table.write_text(_local_times(1), encoding="utf-8")
+    (run,) = read_table(table)
+    assert any("lines 4 and 5 are an hour and 20 s apart, where 20 s are usual" in note for note in run.notes)
+    table.write_text(_local_times(0), encoding="utf-8")
+    assert not any("an hour" in note for note in read_table(table)[0].notes)
+    table.write_text(_local_times(-1), encoding="utf-8")
+    with pytest.raises(InputError, match=r"time runs back .*if the clock was put back there from summer time"):
+        read_table(table)

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 import typer
 
+import tyrefem as tf
 from tyrefem.cli import app
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -135,6 +136,23 @@ def test_every_command_in_a_shell_block_exists(page: Path) -> None:
 def test_a_command_that_does_not_exist_is_refused(line: str) -> None:
     with pytest.raises(USAGE_ERROR):
         parse(line.split())
+
+
+@pytest.mark.parametrize("page", HOWTO, ids=lambda page: page.stem)
+def test_a_change_within_a_sentence_is_a_key_of_a_study(page: Path) -> None:
+    changes = re.findall(r"`--set ([^`]+)`", prose(page))
+    studies = ("nasa-22x5.5-8pr", "nasa-taxi-takeoff")
+    for change in (shlex.split(text)[0].split("=", 1) for text in changes):
+        errors = [_error_of(name, dict([change])) for name in studies]
+        assert "" in errors, errors
+
+
+def _error_of(study: str, changes: dict[str, str]) -> str:
+    try:
+        tf.study(study, changes)
+    except tf.InputError as error:
+        return str(error)
+    return ""
 
 
 def test_every_picture_is_on_a_page() -> None:

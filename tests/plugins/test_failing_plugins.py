@@ -186,6 +186,16 @@ def test_an_error_of_a_strain_cycle_has_its_line(write: Write, broken: str) -> N
         study(USES["strain-law"]).run()
 
 
+@pytest.mark.parametrize("content", ["return self.at_rest + undefined * speed", "return self.at_rest / (0.0 * speed)"])
+def test_an_error_of_a_method_that_gives_a_number_has_its_line(write: Write, content: str) -> None:
+    """Such methods are wrapped once more, in a file with lines of its own."""
+    whole = "return self.at_rest + self.at_10_m_s * (speed / 10.0) ** self.exponent"
+    file = write("boundary-law", (whole, content))
+    line = 1 + file.read_text(encoding="utf-8").partition(content)[0].count("\n")
+    with pytest.raises(tf.InputError, match=rf"class PowerFilm, film: \w+: .* \(line {line}\)"):
+        study(USES["boundary-law"]).run()
+
+
 @pytest.mark.parametrize(
     ("content", "words"),
     [

@@ -49,6 +49,22 @@ def test_marks_on_the_wall_leave_kind_width_and_load() -> None:
     assert parse_size("22x5.5 8PR TL").ply_rating == 8
 
 
+@pytest.mark.parametrize(
+    ("size", "metric", "diameter"),
+    [
+        ("305/680R18", "305/35R18", "680 mm"),
+        ("180/550 R13", "185/60R13", "550 mm"),
+        ("300/710-18", "305/40R18", "710 mm"),
+    ],
+)
+def test_a_race_tyre_names_its_metric_size(size: str, metric: str, diameter: str) -> None:
+    with pytest.raises(
+        InputError, match=f"gives the outer diameter, {diameter}, .*; write {metric} with .*outer_diameter"
+    ):
+        parse_size(size)
+    assert parse_size(metric).kind == "passenger"
+
+
 @pytest.mark.parametrize("size", ["10.00-20", "12.00-20 18PR", "8.50-10 8PR", "6.50-8", "7.00-16LT"])
 def test_bias_sizes_of_width_and_rim_are_refused_as_such(size: str) -> None:
     with pytest.raises(InputError, match=r"is a bias tyre of which the size gives width and rim alone"):
@@ -58,6 +74,45 @@ def test_bias_sizes_of_width_and_rim_are_refused_as_such(size: str) -> None:
 def test_a_bias_truck_size_names_the_tubeless_size_that_replaces_it() -> None:
     with pytest.raises(InputError, match=r"11R22\.5 replaces this one"):
         parse_size("10.00-20")
+
+
+@pytest.mark.parametrize("size", ["14.00R20 164/160J", "16.00R20", "14.00-20", "12.5R20"])
+def test_a_wide_tyre_on_a_flat_rim_has_no_tubeless_size_that_replaces_it(size: str) -> None:
+    """A 14.00R20 is 1240 mm high, the 15R22.5 that was named 1072 mm."""
+    with pytest.raises(InputError) as caught:
+        parse_size(size)
+    assert "replaces" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("size", "message"),
+    [
+        ("365/80R20", "mean diameter is 85 l; allowed: at most 50 l"),
+        ("395/85R20 168J", "load index 168 is 5600 kg; allowed: at most 1900 kg"),
+        ("255/100R16 126K", "speed symbol K; allowed: those above 110 km/h"),
+        ("LT365/80R20", "no light-truck size .* 85 l; allowed: at most 60 l"),
+        ("520/85R42", "no car size .* but one of trucks, tractors or machines on flat rims"),
+    ],
+)
+def test_trucks_and_machines_written_as_cars_are_refused(size: str, message: str) -> None:
+    """They were drawn as a car's tyre with 250 kPa, one polyester ply and the truck's load."""
+    with pytest.raises(InputError, match=message):
+        parse_size(size)
+
+
+@pytest.mark.parametrize("size", ["325/60R20 121H", "LT325/80R16", "LT375/45R22 128S", "235/65R16C 121/119R"])
+def test_the_largest_cars_and_light_trucks_are_none_of_these(size: str) -> None:
+    assert parse_size(size).kind in {"passenger", "light-truck"}
+
+
+@pytest.mark.parametrize("service", ["160K (158L)", "160K/158L", "160K 158L", "(160K) (158L)"])
+def test_a_second_load_index_is_for_another_speed(service: str) -> None:
+    assert parse_size(f"385/65R22.5 {service}").load == pytest.approx(4500 * GRAVITY, abs=0.1)
+
+
+@pytest.mark.parametrize(("size", "successor"), [("15R22.5", "385/65R22.5"), ("18R22.5", "445/65R22.5")])
+def test_wide_base_sizes_in_inches_are_as_high_as_their_successors(size: str, successor: str) -> None:
+    assert parse_size(size).section_height == pytest.approx(parse_size(successor).section_height or 0.0, rel=0.03)
 
 
 @pytest.mark.parametrize("mark", ["RFT", "Run Flat", "run-flat", "ZP", "SSR"])
@@ -156,7 +211,7 @@ def test_light_trucks_have_load_ranges(text: str, letter: str) -> None:
         ("31x10,50R15LT", "did you mean '31x10.50R15LT'"),
         ("185R14C", "did you mean '185/80R14C'"),
         ("180/55ZR17", "no car size, whose widths end in 5, .* nearest: 185/55ZR17"),
-        ("999/99R18", "no car size, whose widths end in 5, .* nearest: 995/99R18"),
+        ("999/99R18", "no car size .* trucks, tractors or machines"),
         ("22x5.5 0PR", "'22x5.5 0PR' has the ply rating 0; allowed: 2 to 60"),
         ("205/60R15 99PR", "has the ply rating 99; allowed: 2 to 60"),
         ("120/70ZR17 M/C", "is a motorcycle size, which has no rules here"),

@@ -50,6 +50,18 @@ def test_road_tyres_have_the_standards_size(size: str, diameter: float, width: f
     assert draw_size(size).rules["rim_width"].value == pytest.approx(rim * INCH)
 
 
+@pytest.mark.parametrize(
+    ("size", "mass"),
+    [("215/75R17.5", 1700), ("275/70R22.5", 3150), ("315/80R22.5", 4000), ("385/65R22.5", 4500), ("445/65R22.5", 5800)],
+)
+def test_loads_of_trucks_without_load_index_are_within_the_spread_that_is_stated(size: str, mass: float) -> None:
+    """Loads of the indices 126, 148, 156, 160 and 169, kg: 0.72 to 1.23 times as much as before."""
+    load = draw_size(size).rules["rated_load"]
+    assert load.value / 9.80665 == pytest.approx(mass, rel=0.16)
+    assert "within 16 %" in load.source
+    assert "write the load index" in load.source
+
+
 @pytest.mark.parametrize("size", ["33x8.50R15LT", "34x8.50R16LT"])
 def test_a_flotation_size_may_be_higher_than_wide(size: str) -> None:
     section = tf.section_from_size(size)

@@ -206,6 +206,16 @@ def test_tornado_moves_every_number_alone(tyre: Study) -> None:
     first, second, *_ = repr(answer).splitlines()
     assert first == "Which tolerance matters", "a notebook shows the sentences, not the fields of a dataclass"
     assert second.startswith("  The highest temperature, ")
+    with pytest.raises(InputError, match="answer: no answer 'hottest'; did you mean 'hottest_degC'"):
+        answer.of("hottest")
+
+
+def test_cases_in_memory_are_refused_in_one_line(tyre: Study) -> None:
+    table = pd.DataFrame({"name": ["slow", "fast"], "drive.speed [mph]": [10, 20]})
+    for cases in (table, [{"drive.speed": "10 mph"}], b"cases.csv"):
+        with pytest.raises(InputError, match=r"^cases: must be the path of a CSV file or workbook, not a ") as caught:
+            plan_of(tyre, {}, sample="list", cases=cases)
+        assert "\n" not in str(caught.value)
 
 
 def test_tornado_takes_the_tolerances_that_cards_state(tyre: Study) -> None:

@@ -23,6 +23,7 @@ from tyrefem.materials.card import MaterialCard
 from tyrefem.materials.wear import Wear
 from tyrefem.mechanics.cycle_schedule import CycleSchedule
 from tyrefem.mechanics.rolling.friction_rings import FrictionRings
+from tyrefem.reports.wear import unresolved
 from tyrefem.wear.drive_wear import drive_wear
 from tyrefem.wear.ring_wear import RingWear, tread_table
 from tyrefem.wear.worn_section import LEFT, WornFace, WornProfile, worn_section
@@ -39,6 +40,18 @@ def rings(power: float = 50.0, count: int = 41, exponent: float = 1.0) -> RingWe
     places = section.place(s, section.total_thickness(s)).T
     table = Wear.check({**TABLE, "exponent": exponent})
     return RingWear(places, np.full(count, 0.155 / count), np.full(count, power / count), 70.0, 1.95, table)
+
+
+@pytest.mark.fast
+def test_rings_with_negative_friction_power_are_mentioned() -> None:
+    """They count as not worn, so that the wear of a coarse mesh is too high."""
+    wear = rings()
+    assert unresolved(wear) == []
+    power = wear.power.copy()
+    power[[3, 4, 20]] = -1.0
+    (line,) = unresolved(replace(wear, power=power))
+    assert "3 of 41 rings is negative, -3 W in all" in line
+    assert "mesh.size is too coarse" in line
 
 
 @pytest.mark.fast

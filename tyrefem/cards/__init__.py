@@ -58,7 +58,9 @@ class Card(Brief, BaseModel):
         if isinstance(data, cls):
             return data
         if not isinstance(data, Mapping):
-            raise InputError(f"must be a table of keys, not {data!r:.60}")
+            number = isinstance(data, str | int | float) and "value" in _allowed(cls)
+            hint = "; its number has the key 'value'" if number else ""
+            raise InputError(f"must be a table of keys, not {data!r:.60}{hint}")
         allowed = _allowed(cls)
         for key in data:
             if key not in allowed:

@@ -75,7 +75,8 @@ def check(
 def _refuse_names(rename: list[str] | None, ignore: list[str] | None) -> None:
     """Raises InputError for names of columns: only a measured table has them."""
     if rename or ignore:
-        raise InputError("goes with a measured table", field="--rename" if rename else "--ignore")
+        message = "goes with a measured table; in a study both are keys of its [[measured]] entries, rename and ignore"
+        raise InputError(message, field="--rename" if rename else "--ignore")
 
 
 def _plugins(path: Path, study: str | None) -> None:

@@ -133,6 +133,7 @@ def roll(
             write_curve(curve, folder, pictures=pictures)
         else:
             write_files(rolled, folder, pictures=pictures, vtk=vtk)
+    warn(result.warnings)
     answer_with(result.summary() if several else summary(rolled))
     say(words)
     say(f"results in {folder}")

@@ -85,18 +85,27 @@ def wear(
     given = {**DEFAULTS, **given}
     warn(loaded.warnings)
     place = out or Path("results") / f"{loaded.name}-wear"
+    options = {name: option for name, (option, _) in OPTIONS.items()}
+    no_section: InputError | None = None
+    worn: dict[str, Any] | None = None
     with results_folder(place, "wear", FILES, origin=StudyOrigin(loaded), force=force) as folder:
         try:
             with progress(f"{loaded.name}: rolling"):
                 rolled = None if of_drive else roll(loaded, **given)
                 worn_off: RingWear = drive_wear(loaded) if rolled is None else ring_wear(rolled)
+        except InputError as error:
+            raise placed(error, options, given, loaded) from None
+        try:
             worn = worn_section(loaded, worn_off, kilometres) if distance is not None else None
         except InputError as error:
-            raise placed(error, {name: option for name, (option, _) in OPTIONS.items()}, given, loaded) from None
+            # The wear itself is computed, by minutes of rolling: it is written all the same.
+            no_section = placed(error, options, given, loaded)
         write_files(loaded, rolled, worn_off, folder, worn, pictures=pictures)
     answer_with(folder / "summary.json")
     say(words(loaded, rolled, worn_off))
-    say(f"results in {folder}")
+    say(f"results in {folder}{'' if no_section is None else ', without a worn section'}")
+    if no_section is not None:
+        raise no_section from None
 
 
 #: Place among the commands.

@@ -10,6 +10,7 @@ from typing import Any, TypedDict, Unpack
 
 import numpy as np
 
+from tyrefem.compare.between_readings import interpolation_note
 from tyrefem.compare.comparison import ComparisonData, comparison_of
 from tyrefem.compare.experiment import Experiment, Table, acting_in, driven, experiments
 from tyrefem.compare.history import histories
@@ -112,6 +113,7 @@ def compare(
         curves[experiment.name] = computed.readings
         first, last = computed.readings["time_s"].iloc[[0, -1]]
         notes += outside_note(experiment, first, last, outside)
+        notes += interpolation_note(experiment.name, computed, of_experiment)
     if not all_histories:
         raise InputError("; ".join(["no sensor has a reading within the simulated span", *notes]))
     if isinstance(study, StudyData):

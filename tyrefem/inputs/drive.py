@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import math
 from bisect import bisect_right
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar
@@ -140,10 +141,9 @@ class Drive(DriveTable):
 
     @model_validator(mode="after")
     def _distinct_names(self) -> Drive:
-        names = [phase.name for phase in self.phases]
-        repeated = {name for name in names if names.count(name) > 1}
-        if repeated:
-            raise InputError(f"two phases are named '{repeated.pop()}'", field="phases")
+        for name, count in Counter(phase.name for phase in self.phases).items():
+            if count > 1:
+                raise InputError(f"two phases are named '{name}'", field="phases")
         return self
 
     @functools.cached_property

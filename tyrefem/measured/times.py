@@ -35,6 +35,8 @@ from tyrefem.measured.timestamps import (
 
 #: s; 30 years. A larger time is a calendar time and needs ``time_offset``.
 LONGEST_TIME = 1e9
+#: s.
+HOUR = 3600.0
 #: "Unit" of a time column that holds timestamps, alone or with a column of dates.
 STAMPED = "ISO 8601"
 
@@ -106,7 +108,9 @@ class TimeColumn:
             times, notes = self._counted([in_24_hours(cell) for cell in cells], lines, runs, file)
             times = {name: values + offset for name, values in times.items()}
         for name, values in times.items():
-            _check_increasing(values, [lines.numbers[row] for row in runs[name]], name, file, self.unit in FORMS)
+            _check_increasing(values, [lines.numbers[row] for row in runs[name]], name, file, self.unit)
+            if self.unit == STAMPED:
+                notes += _put_forward(values, [lines.numbers[row] for row in runs[name]])
         return times, notes
 
     def _counted(
@@ -215,12 +219,28 @@ def _check_longest(times: NDArray[np.float64], column: str, file: Path) -> None:
         )
 
 
-def _check_increasing(times: NDArray[np.float64], lines: list[int], name: str, file: Path, has_clock: bool) -> None:
+def _put_forward(times: NDArray[np.float64], lines: list[int]) -> tuple[str, ...]:
+    """A note where timestamps step by an hour more than usual: local time, put forward to summer time there?"""
+    steps = np.diff(times)
+    usual = float(np.median(steps)) if len(steps) > 2 else HOUR
+    rows = np.flatnonzero(np.abs(steps - HOUR - usual) <= usual / 2) if usual < HOUR / 4 else []
+    return tuple(
+        f"lines {lines[row]} and {lines[row + 1]} are an hour and {steps[row] - HOUR:g} s apart, where {usual:g} s are "
+        "usual: if the clock was put forward there (summer time), take an hour off the later times"
+        for row in rows
+    )
+
+
+def _check_increasing(times: NDArray[np.float64], lines: list[int], name: str, file: Path, unit: str) -> None:
     for row in np.flatnonzero(np.diff(times) <= 0.0)[:1]:
         same = times[row] == times[row + 1]
         wrong = "the same time" if same else f"time runs back from {times[row]:g} s to {times[row + 1]:g} s"
         at = f", {times[row]:g} s," if same else ""
-        hint = " (over midnight, give the dates, too)" if has_clock and not same else ""
+        hint = ""
+        if unit in FORMS and not same:
+            hint = " (over midnight, give the dates, too)"
+        elif unit == STAMPED and HOUR / 2 <= times[row] - times[row + 1] <= HOUR:
+            hint = " (if the clock was put back there from summer time, add an hour to the later times)"
         raise InputError(
             f"lines {lines[row]} and {lines[row + 1]}: {wrong}{at} in run '{name}'; times must increase{hint}",
             file=file,

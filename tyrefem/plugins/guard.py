@@ -64,11 +64,16 @@ def guarded(function: Callable[..., Any], place: str, origin: Origin, file: str 
         except (InputError, MemoryError):
             raise
         except (Exception, SystemExit) as error:
-            words = failure_words(error, file or function.__code__.co_filename)
+            words = failure_words(error, file or _file_of(function))
             raise plugin_error(origin, place, words) from error
 
     setattr(call, _MARK, True)
     return call
+
+
+def _file_of(function: Callable[..., Any]) -> str:
+    """The file with the lines of a function, also of one that a decorator of another file wraps."""
+    return str(getattr(inspect.unwrap(function), "__code__", function.__code__).co_filename)
 
 
 def _with_number(function: Callable[..., Any], numbers: str | None, place: str, origin: Origin) -> Callable[..., Any]:

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tyrefem.inputs.study_plugins import plugin_summary
+from tyrefem.mechanics.rolling.roll import against_the_lean_words
 from tyrefem.output import atomic_folder, write_json
 from tyrefem.tyre_forces.property_file import tir_text
 
@@ -44,9 +45,7 @@ def warnings(forces: TyreForces) -> tuple[str, ...]:
     loads = ", ".join(f"{load:.0f}" for load in forces.against_the_lean)
     if not loads:
         return ()
-    linear = forces.wheel.pressed.footprint.motion == "linear"
-    remedy = "; linear motion is too stiff there: take motion large" if linear else ""
-    return (f"at {loads} N camber pushes the tyre away from the side to which it leans{remedy}",)
+    return (against_the_lean_words(loads, forces.wheel.pressed.footprint.motion),)
 
 
 def write_files(forces: TyreForces, folder: Path, *, pictures: bool = True) -> None:

@@ -25,7 +25,7 @@ FILES = ("life.csv", "sensitivity.csv", "life.png", "life.vtu")
 #: What every file of lives says of them.
 ABOUT = (
     "distance until a flaw of c_0 has grown to a crack of c_1; for comparing designs and drives: "
-    "not compared with any measured life"
+    "not compared with any measured life, and kilometres of small flaws are too few"
 )
 MINER = "damage of load cases and phases is summed by Miner's rule; the drive is repeated until the sum is 1"
 

@@ -27,6 +27,8 @@ FILES = ("wear.csv", "wear.png", "worn-section.toml")
 ABOUT = "wear at the first profile, not compared with any measured tread"
 #: mm per 1000 km in m per km.
 MILLIMETRES = 1e-6
+#: Negative friction power over the positive that is mentioned: its rings count as not worn.
+NEGATIVE = 0.01
 
 
 def write_files(
@@ -146,6 +148,18 @@ def words(study: StudyData, rolled: RolledStudy | None, wear: RingWear) -> str:
             f"  wear {numbers['mean_wear_mm_per_1000_km']:.3g} mm per 1000 km on average, "
             f"{numbers['most_wear_mm_per_1000_km']:.3g} at z = {wear.places[1, worst] * 1e3:.0f} mm; "
             f"{numbers['mass_mg_per_km']:.3g} mg/km",
+            *unresolved(wear),
             f"  {ABOUT}",
         ]
     )
+
+
+def unresolved(wear: RingWear) -> list[str]:
+    """A line where the mesh does not resolve the slip of the rings."""
+    rings, power = wear.negative
+    if -power <= NEGATIVE * float(wear.power[wear.power > 0].sum()):
+        return []
+    return [
+        f"  friction power of {rings} of {len(wear.power)} rings is negative, {power:.3g} W in all: these count as not "
+        "worn, and the mean is too high; mesh.size is too coarse for single rings"
+    ]

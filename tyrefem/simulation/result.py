@@ -23,6 +23,7 @@ from tyrefem.mechanics.cautions import warnings_of
 from tyrefem.quantity import KELVIN
 from tyrefem.simulation.effect_states import StateHistory
 from tyrefem.simulation.heat_budget import HeatBudget, whole_tyre
+from tyrefem.simulation.hot_rubber import hot_rubber
 from tyrefem.simulation.phases import PhaseState, deep_contacts, phase_states
 from tyrefem.simulation.readings import contained_air, logged_columns, temperatures_at, within
 from tyrefem.simulation.rolling_resistance import RollingResistance, just_before, rolling_reading, rolling_resistance
@@ -372,13 +373,16 @@ class ResultData(Brief):
 
     @functools.cached_property
     def warnings(self) -> tuple[str, ...]:
-        """Warnings of unusual input, and of phases outside the range of the assumptions; one line each."""
+        """Warnings of unusual input, of phases outside the range of the assumptions, and of hot rubber; one line each.
+
+        Where the tread slides, its surface may be hot: `SlidingOutcome.warnings` say where it decomposes.
+        """
         return (
             *map(str, warnings_of(self.study)),
             *((CASES_LEFT_OUT,) if self.study.is_campaign else ()),
             *(() if self.feedback is None else self.feedback.warnings),
             *deep_contacts(self.study.section, self.phases),
-            *(() if self.sliding is None else self.sliding.warnings),
+            *(hot_rubber(self.peaks) if self.sliding is None else self.sliding.warnings),
         )
 
 

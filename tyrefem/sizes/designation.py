@@ -7,12 +7,13 @@ from dataclasses import dataclass
 
 from tyrefem.errors import InputError
 from tyrefem.sizes.flotation import BELOW_NOMINAL, NARROW
-from tyrefem.sizes.load_index import load_of_index
+from tyrefem.sizes.load_index import GRAVITY, load_of_index
 
 INCH, MM = 0.0254, 1e-3
 _NUMBER = r"\d{1,4}(?:\.\d{1,3})?"
-#: Load index with speed symbol, as "91V", "152/148M", "(94Y)".
-_SERVICE = r"(?:\s+\(?(?P<index>\d{2,3})(?:/\d{2,3})?\s*(?P<symbol>[A-HJ-NP-Y])\)?)?"
+#: Load index with speed symbol, as "91V", "152/148M", "(94Y)"; a second one, as in "160K (158L)", is for another speed.
+_SECOND = r"(?:\s*[\s(/]\s*\d{2,3}(?:/\d{2,3})?\s*[A-HJ-NP-Y]\)?)?"
+_SERVICE = rf"(?:\s+\(?(?P<index>\d{{2,3}})(?:/\d{{2,3}})?\s*(?P<symbol>[A-HJ-NP-Y])\)?{_SECOND})?"
 #: Marks behind a size: all that may stand there, those of an extra load, those of run-flat tyres.
 _MARKS = re.compile(
     r"\s*,?\s*(?:\b|(?<=\d[A-Z]))(?:XL|SL|extra load|standard load|reinforced|TL|tubeless|M\s?[+&/]\s?S|3PMSF)(?!\w)",
@@ -49,9 +50,9 @@ _AIRCRAFT = re.compile(
     rf"(?:(?P<service>[BCH])\s?)?(?P<outside>{_NUMBER})\s?[x×X]\s?(?P<width>{_NUMBER})(?:\s?(?P<build>[-R])\s?(?P<rim>{_NUMBER}))?{_PLIES}",
     re.IGNORECASE,
 )
-#: Diameter of a flat rim -> that of the 15 degree rim of the same tyre without tube, in; the width's number rises by
-#: up to one (from memory).
-TUBELESS = {"20": "22.5", "22": "24.5"}
+#: Diameter of a flat rim -> that of the 15 degree rim of the same tyre without tube, and the widths that have one, in;
+#: the width's number rises by up to one (from memory). Wider tyres, as 14.00R20, have none.
+TUBELESS = {"20": ("22.5", (7.5, 8.25, 9.0, 10.0, 11.0, 12.0)), "22": ("24.5", (10.0, 11.0))}
 #: One size of each kind, for messages.
 EXAMPLES = (
     "205/60R15",
@@ -67,6 +68,14 @@ EXAMPLES = (
 #: Height of a truck section over its width where the size gives the width in inches. Estimate: 10R22.5 to 12R22.5
 #: are 0.85 to 0.88 by the standard (ETRTO, from memory).
 FULL_SERIES = 0.865
+#: The same from this width on, in: 15R22.5, 16.5R22.5 and 18R22.5 are 1072, 1124 and 1158 mm (from memory), as their
+#: successors 385/65R22.5, 425/65R22.5 and 445/65R22.5.
+WIDE_SERIES, LEAST_WIDE = 0.65, 14.0
+#: Largest metric sizes on rims of whole inches by kind: width x height x mean diameter, l, and load of the index, kg.
+#: Estimate: LT315/75R16 has 48 l, LT325/80R16 56 l, 335/80R20 of trucks 70 l; load indices go to 126 and 132.
+LARGEST = {"passenger": (50.0, 1900.0), "light-truck": (60.0, 2400.0)}
+#: Speed symbols up to 110 km/h: no car has them.
+SLOW = "ABCDEFGJK"
 #: Smallest and largest ply rating.
 PLY_RATINGS = (2, 60)
 #: Load range of a ply rating (Tire and Rim Association, from memory).
@@ -138,9 +147,10 @@ def parse_size(text: object) -> TyreSize:
     if match := _METRIC.fullmatch(plain):
         return _metric(tidy, match)
     if match := _TRUCK.fullmatch(plain):
-        width = float(match["width"]) * INCH
+        width = float(match["width"])
+        series = FULL_SERIES if width < LEAST_WIDE else WIDE_SERIES
         return TyreSize(
-            _tidy(tidy), "truck", width, FULL_SERIES, float(match["rim"]) * INCH, None, _load(match), _plies(match)
+            _tidy(tidy), "truck", width * INCH, series, float(match["rim"]) * INCH, None, _load(match), _plies(match)
         )
     if (match := _FLOTATION.fullmatch(plain)) and _is_flotation(match):
         return _flotation(tidy, match)
@@ -179,8 +189,27 @@ def looks_like_size(text: object) -> bool:
     return bool(re.match(f"(?:{usual}|{other})", text, re.IGNORECASE))
 
 
+def _series_of_race_tyre(width: float, outside: float, rim: float) -> int | None:
+    """The series to the next five per cent, if a number is an outer diameter, mm; width in mm, rim in inches."""
+    series = 100 * (outside - rim * INCH / MM) / 2 / width
+    return 5 * round(series / 5) if outside > 100 and 20 <= series <= 100 else None
+
+
+def _width_of_cars(width: str) -> str:
+    """The width of three digits in the same ten, mm, that ends in 5."""
+    return str(max(int(width) // 10 * 10 + 5, 105))
+
+
 def _metric(text: str, match: re.Match[str]) -> TyreSize:
     build, rim, series = match["build"].upper(), float(match["rim"]), float(match["series"])
+    of_race = _series_of_race_tyre(float(match["width"]), series, rim)
+    if of_race is not None:
+        metric = f"{_width_of_cars(match['width'])}/{of_race}R{match['rim']}"
+        raise InputError(
+            f"'{text}' gives the outer diameter, {series:g} mm, as race tyres do, where the series belongs; write "
+            f"{metric} with parameters = {{ outer_diameter = '{series:g} mm' }} (new section, new study: --set)",
+            field="size",
+        )
     if build != "R":
         raise InputError(
             f"'{text}' is a bias-ply road tyre, which has no rules here; radials are written "
@@ -200,11 +229,12 @@ def _metric(text: str, match: re.Match[str]) -> TyreSize:
     if match["letter"] and not light and (kind != "light-truck" or "/" in match["slash"]):
         whole = f"LT{text.removeprefix(match['service'] or '').strip()}"
         raise InputError(f"'{text}': load ranges belong to light-truck sizes, which are written {whole}", field="size")
+    if kind != "truck":
+        _refuse_machines(text, match, kind)
     if kind == "passenger" and int(match["width"]) % 10 != 5:
-        # The width of three digits in the same ten.
-        near = str(max(int(match["width"]) // 10 * 10 + 5, 105))
+        near = _width_of_cars(match["width"])
         raise InputError(
-            f"'{text}' is no car size, whose widths end in 5, but one of motorcycles or tractors, which have no rules "
+            f"'{text}' is no car size, whose widths end in 5, but one of motorcycles or machines, which have no rules "
             f"here; nearest: {text.replace(match['width'], near, 1)}",
             field="size",
         )
@@ -213,6 +243,31 @@ def _metric(text: str, match: re.Match[str]) -> TyreSize:
     extra = kind == "passenger" and _EXTRA_LOAD.search(text) is not None
     load, plies = _load(match), _plies(match)
     return TyreSize(_tidy(text), kind, width, series / 100, rim * INCH, None, load, plies, load_range, extra)
+
+
+def _refuse_machines(text: str, match: re.Match[str], kind: str) -> None:
+    """Refuse what is written as a car's size but is of trucks, tractors or machines: 365/80R20, 520/85R42."""
+    width, rim = float(match["width"]) * MM, float(match["rim"]) * INCH
+    height = width * float(match["series"]) / 100
+    litres, kilograms = LARGEST[kind]
+    load, symbol = _load(match), (match["symbol"] or "-").upper()
+    if load is not None and load > kilograms * GRAVITY:
+        reason = f"load index {match['index']} is {load / GRAVITY:.0f} kg; allowed: at most {kilograms:g} kg"
+    elif kind == "passenger" and symbol in SLOW:
+        reason = f"speed symbol {symbol}; allowed: those above 110 km/h, from L on"
+    elif width * height * (rim + height) * 1e3 > litres:
+        reason = (
+            f"width x height x mean diameter is {width * height * (rim + height) * 1e3:.0f} l; allowed: at most "
+            f"{litres:g} l"
+        )
+    else:
+        return
+    name = "car" if kind == "passenger" else "light-truck"
+    raise InputError(
+        f"'{text}' is no {name} size ({reason}) but one of trucks, tractors or machines on flat rims, which have no "
+        "rules here; truck sizes are for 15 deg rims (diameters in half inches), such as 11R22.5 or 295/80R22.5",
+        field="size",
+    )
 
 
 def _is_flotation(match: re.Match[str]) -> bool:
@@ -291,8 +346,9 @@ def _aircraft(text: str, match: re.Match[str]) -> TyreSize:
 
 def _tubeless(match: re.Match[str]) -> str:
     """The size for a 15 degree rim that replaces one for a flat rim, as a message says it."""
-    rim = TUBELESS.get(match["rim"])
-    return f"; {int(float(match['width'])) + 1}R{rim} replaces this one" if rim else ""
+    rim, widths = TUBELESS.get(match["rim"], ("", ()))
+    width = float(match["width"])
+    return f"; {int(width) + 1}R{rim} replaces this one" if width in widths else ""
 
 
 def _tidy(text: str) -> str:

@@ -85,8 +85,14 @@ def road_rim(
     )
 
 
-def rated(size: TyreSize, rule: Rules, density: float, pressure: float, source: str) -> float:
-    """Rated load and pressure: of the load index, or so many kg per litre of section width x height x mean diameter.
+def litres(size: TyreSize) -> float:
+    """Width x height x mean diameter of the section, l: what loads are estimated by."""
+    height = size.section_height or 0.0
+    return size.width * height * ((size.rim_diameter or 0.0) + height) * 1e3
+
+
+def rated(size: TyreSize, rule: Rules, estimate: tuple[float, str], pressure: float, source: str) -> float:
+    """Rated load and pressure: of the load index, or the estimate, kg with the words of its source.
 
     Returns the pressure. A load and pressure of use are checked against it.
 
@@ -94,10 +100,7 @@ def rated(size: TyreSize, rule: Rules, density: float, pressure: float, source: 
     ------
     InputError : the pressure of use cannot carry the load of use.
     """
-    height = size.section_height or 0.0
-    volume = size.width * height * ((size.rim_diameter or 0.0) + height) * 1e3
-    load = round(density * volume * GRAVITY, -1)
-    words = f"estimate: {density:g} kg per litre of width x height x mean diameter; {source}"
+    load, words = round(estimate[0] * GRAVITY, -1), f"estimate: {estimate[1]}; {source}"
     if size.load is not None:
         load, words = size.load, "of the load index (ISO 4000-1)"
     return _of_use(rule, load, words, pressure, source)

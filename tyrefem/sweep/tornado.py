@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from tyrefem.errors import InputError
+from tyrefem.errors import InputError, nearest
 from tyrefem.inputs.changes import check_factor
 from tyrefem.inputs.study import StudyData
 from tyrefem.inputs.uncertain_numbers import UncertainNumber, left_out, uncertain_number
@@ -163,7 +163,14 @@ class Tornado(InSentences):
         return str(self.swept.plan.sampling["in_words"][number])
 
     def of(self, answer: str) -> pd.DataFrame:
-        """The rows of an answer, the largest range first."""
+        """The rows of an answer, the largest range first.
+
+        Raises
+        ------
+        InputError : an answer that the tornado does not report; names the nearest.
+        """
+        if answer not in self.answers:
+            raise InputError(f"no answer '{answer}'{nearest(str(answer), self.answers)}", field="answer")
         table = self.table
         return table[table["answer"] == answer].drop(columns="answer").reset_index(drop=True)
 

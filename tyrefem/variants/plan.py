@@ -276,6 +276,9 @@ def card_of(study: StudyData, vary: Mapping[str, Any] | None = None, **options: 
     options : other keys of a sweep file; None: not given.
     """
     data = {key: written(value) for key, value in options.items() if value is not None}
+    if not isinstance(data.get("cases", ""), str):
+        given = type(options["cases"]).__name__
+        raise InputError(f"must be the path of a CSV file or workbook, not a value of type {given}", field="cases")
     if not isinstance(vary, Mapping | None):
         example = "{'drive.speed': ('10 mph', '40 mph')}"
         raise InputError(f"must be a mapping like {example}, not {vary!r:.60}", field="vary")

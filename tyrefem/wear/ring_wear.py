@@ -72,6 +72,13 @@ class RingWear(Brief):
         """(m,) friction energy per area of rubber of one passing, J/m2."""
         return np.asarray(np.maximum(self.power, 0.0) * 2 * np.pi / (self.spin * self.rubber * self.areas))
 
+    @property
+    def negative(self) -> tuple[int, float]:
+        """Number of rings whose friction power is negative, and their power, W: friction takes no power from the road,
+        so there the mesh does not resolve the slip."""
+        below = self.power[self.power < 0]
+        return len(below), float(below.sum())
+
     @functools.cached_property
     def depth_per_km(self) -> Array:
         """(m,) depth worn per kilometre, m."""

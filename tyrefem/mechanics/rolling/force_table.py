@@ -15,7 +15,7 @@ from tyrefem.brief import Brief
 from tyrefem.errors import InputError
 from tyrefem.materials.cord_layers import masses
 from tyrefem.mechanics.footprint.contact import LADDER
-from tyrefem.mechanics.rolling.roll import HARMONICS, driven, row, swept
+from tyrefem.mechanics.rolling.roll import HARMONICS, driven, pushes_away, row, swept
 from tyrefem.mechanics.rolling.rolled import RolledTyre
 from tyrefem.mechanics.rolling.rolling_motion import RollingMotion
 from tyrefem.mechanics.rolling.wheel_on_road import WheelOnRoad, wheel_on_road
@@ -35,8 +35,6 @@ SLIPS = (-0.3, -0.2, -0.12, -0.08, -0.05, -0.03, -0.015, -0.005, 0.005, 0.015, 0
 CAMBERS = (float(np.radians(3.0)),)
 #: With camber, where both signs are needed, one of so many slip angles is taken.
 THINNED = 2
-#: Side force over load from which camber counts as pushing to the wrong side: more than the error of the contact.
-WRONG = 2e-3
 #: Harmonics of all points: the middle one of those that `roll` tries.
 MIDDLE = HARMONICS[len(HARMONICS) // 2]
 
@@ -93,9 +91,7 @@ class TyreForces(Brief):
     def against_the_lean(self) -> tuple[float, ...]:
         """Loads, N, at which camber without slip angle pushes the tyre away from the side to which it leans."""
         upright = [row for row in self.rows if row["camber_rad"] and not row["slip_angle_rad"]]
-        return tuple(
-            row["F_z_N"] for row in upright if row["F_y_N"] * np.sign(row["camber_rad"]) < -WRONG * row["F_z_N"]
-        )
+        return tuple(row["F_z_N"] for row in upright if pushes_away(row["camber_rad"], row["F_y_N"], row["F_z_N"]))
 
     @property
     def dimensions(self) -> TyreDimensions:

@@ -29,6 +29,8 @@ HARMONICS = tuple(count for count in LADDER if 54 <= count <= 120)
 SMALL_FORCE = 0.02
 #: Slip angle, rad, and slip at which stiffnesses are taken, on both sides of zero.
 SMALL_ANGLE, SMALL_SLIP = math.radians(0.5), 5e-3
+#: Side force over load from which camber counts as pushing to the wrong side: more than the error of the contact.
+WRONG = 2e-3
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,6 +67,11 @@ class RolledStudy(Brief):
         """Effective rolling radius: travel per radian straight ahead without torque, m."""
         return self.wheel.free(self.state.harmonics).travel
 
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What a reader of the forces must know, one line each."""
+        return camber_warnings(self.wheel, self.state.harmonics)
+
     def summary(self) -> dict[str, Any]:
         """All results in SI as the keys state, with versions."""
         from tyrefem.output import versions
@@ -94,6 +101,31 @@ class RolledStudy(Brief):
             "versions": versions(),
             **plugin_summary(self.study),
         }
+
+
+def pushes_away(camber: float, side_force: float, load: float) -> bool:
+    """Whether a side force, N, of camber, rad, is away from the side to which the wheel leans."""
+    return side_force * np.sign(camber) < -WRONG * load
+
+
+def camber_warnings(wheel: WheelOnRoad, harmonics: int) -> tuple[str, ...]:
+    """A line where camber alone, straight ahead without torque, pushes the tyre to the wrong side."""
+    if not wheel.rolling.camber:
+        return ()
+    _, side_force, load = map(float, wheel.free(harmonics).force)
+    if not pushes_away(wheel.rolling.camber, side_force, load):
+        return ()
+    return (against_the_lean_words(f"{load:.0f}", wheel.pressed.footprint.motion),)
+
+
+def against_the_lean_words(loads: str, motion: str) -> str:
+    """The warning of loads, N, at which camber pushes the tyre to the wrong side.
+
+    >>> against_the_lean_words("5000", "large")
+    'at 5000 N camber pushes the tyre away from the side to which it leans'
+    """
+    remedy = "; linear motion is too stiff there: take motion large" if motion == "linear" else ""
+    return f"at {loads} N camber pushes the tyre away from the side to which it leans{remedy}"
 
 
 def row(wheel: WheelOnRoad, state: RolledTyre) -> dict[str, float]:

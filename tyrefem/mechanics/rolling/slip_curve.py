@@ -13,7 +13,17 @@ from tyrefem.brief import Brief
 from tyrefem.errors import InputError
 from tyrefem.inputs.study_plugins import plugin_summary
 from tyrefem.mechanics.footprint.natural_frequencies import AMPLITUDE
-from tyrefem.mechanics.rolling.roll import SMALL_ANGLE, SMALL_SLIP, TOLERANCE, RolledStudy, driven, row, settled, swept
+from tyrefem.mechanics.rolling.roll import (
+    SMALL_ANGLE,
+    SMALL_SLIP,
+    TOLERANCE,
+    RolledStudy,
+    camber_warnings,
+    driven,
+    row,
+    settled,
+    swept,
+)
 from tyrefem.mechanics.rolling.rolled import RolledTyre
 from tyrefem.mechanics.rolling.rolling_motion import RollingMotion
 from tyrefem.mechanics.rolling.standing import StandingStiffness, StandingTyre, as_it_rolls
@@ -93,6 +103,11 @@ class SlipCurve(Brief):
         """
         stiffness = as_it_rolls(self.wheel.free(self.states[0].harmonics))
         return self.stiffness.slip / stiffness.longitudinal, self.stiffness.cornering / stiffness.lateral
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What a reader of the forces must know, one line each."""
+        return camber_warnings(self.wheel, self.states[0].harmonics)
 
     @property
     def table(self) -> Any:

@@ -16,6 +16,7 @@ from tyrefem.sizes.road import (
     STANDARD,
     check_rim_diameter,
     design_width,
+    litres,
     measuring_rim,
     rated,
     rated_flotation,
@@ -83,7 +84,8 @@ def _rim_and_rating(size: TyreSize, rule: Rules, pressure: float, density: float
     else:
         spread = "extra load, 1.1 times a standard load" if size.extra_load else "mean of eight sizes, 3 % either way"
         words = f"reference pressure {pressure / 1e3:g} kPa ({STANDARD}); {spread}"
-        pressure = rated(size, rule, density, pressure, words)
+        load = (density * litres(size), f"{density:g} kg per litre of width x height x mean diameter")
+        pressure = rated(size, rule, load, pressure, words)
     return rim, outer, pressure
 
 
