@@ -106,7 +106,8 @@ def test_a_failing_check_has_exit_code_2(write: Write, capfd: pytest.CaptureFixt
 
 def test_an_effect_later_than_the_trial_is_told_what_shows_it(write: Write, capfd: pytest.CaptureFixture[str]) -> None:
     late = ("return self.shine", "return self.shine if t > 300 else 0.0")
-    file = write("effect", late)
+    jump = ("surfaces:", "jumps: ClassVar[tuple[float, ...]] = (300.0,)\n    surfaces:")
+    file = write("effect", late, jump)
     assert main(["check", str(file)]) == 2
     out = capfd.readouterr().out
     assert "no reading changes in this drive of 150 s; name a study that shows it (--study NAME), or say" in out
@@ -114,9 +115,12 @@ def test_an_effect_later_than_the_trial_is_told_what_shows_it(write: Write, capf
     assert hint is not None
     imported = f"from {hint[3]} import Signature\nfrom tyrefem.effects import"
     line = f"signature: ClassVar[Signature] = {hint[2]}\n\n    shine:"
-    write("effect", late, ("from tyrefem.effects import", imported), ("shine:", line))
+    write("effect", late, jump, ("from tyrefem.effects import", imported), ("shine:", line))
     assert main(["check", str(file)]) == 0
-    assert main(["check", str(write("effect", late)), "--study", "example-validation"]) == 0
+    assert main(["check", str(write("effect", late, jump)), "--study", "example-validation"]) == 0
+    capfd.readouterr()
+    assert main(["check", str(write("effect", late)), "--study", "example-validation"]) == 2
+    assert "flux('outside_air') jumps at 300 s; its jumps are: none" in capfd.readouterr().out
 
 
 def test_a_copy_of_a_loaded_file_is_checked(write: Write, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:

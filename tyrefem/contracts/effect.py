@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tyrefem.contracts.contract import Contract, finite_run, kept, of_trials
+from tyrefem.contracts.flags import flag_contracts
 from tyrefem.contracts.study import quick_study
 from tyrefem.effects import Effect, Prior
 from tyrefem.effects.effect import FILMS, SINKS
@@ -54,6 +55,7 @@ def contracts(effect: type[Effect], study_name: str | None = None) -> Iterator[C
     tyre = Surroundings(study)
     yield from _over_bounds(tyre, tried)
     yield kept("it is vectorised: many points at once give the same as each alone", lambda: _vectorised(tyre, tried))
+    yield from flag_contracts(tyre, tried["typical"])
     if any(parameter.prior.amplitude for parameter in effect.parameters()):
         null = tried["at null"]
         yield kept("at null its ports change nothing, to the last bit", lambda: _neutral(tyre, null))
