@@ -223,7 +223,7 @@ def _put_forward(times: NDArray[np.float64], lines: list[int]) -> tuple[str, ...
     """A note where timestamps step by an hour more than usual: local time, put forward to summer time there?"""
     steps = np.diff(times)
     usual = float(np.median(steps)) if len(steps) > 2 else HOUR
-    rows = np.flatnonzero(np.abs(steps - HOUR - usual) <= usual / 2) if usual < HOUR / 4 else []
+    rows = np.flatnonzero((usual < HOUR / 4) & (np.abs(steps - HOUR - usual) <= usual / 2))
     return tuple(
         f"lines {lines[row]} and {lines[row + 1]} are an hour and {steps[row] - HOUR:g} s apart, where {usual:g} s are "
         "usual: if the clock was put forward there (summer time), take an hour off the later times"
