@@ -226,6 +226,21 @@ def test_an_effect_that_another_strain_law_does_not_need_is_not_named() -> None:
         assert any("the strain law other" in reason for reason in revision.reasons) is not named
 
 
+def test_an_effect_without_an_amount_is_not_named() -> None:
+    # Evidence of a fit that ended early named a tread worn by 1 +- 2 % with certainty.
+    judgement, members, robust = diagnosed(measured(hot=25.0, off=0.25))
+    assert members == (HOT,)
+    leading = robust.models[0]
+    x, sd = leading.values["hot"]
+    assert x > 5 * sd
+    for amount, named in ((2.1, (HOT,)), (1.9, ())):
+        changed = replace(leading, values={**leading.values, "hot": (amount * sd, sd)})
+        of_one = replace(robust, models=(changed,))
+        revision = beside_discrepancies(replace(judgement, verdict=UNEXPLAINED), of_one, SETTINGS)
+        assert revision.members == named
+        assert ("hot is not named: its amount may as well be none" in revision.reasons) is not bool(named)
+
+
 def test_a_misfit_that_no_discrepancy_explains_names_nothing() -> None:
     data = measured(hot=25.0)
     rng = np.random.default_rng(0)

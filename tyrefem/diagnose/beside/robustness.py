@@ -16,6 +16,8 @@ from tyrefem.diagnose.unknowns.unknown import Unknown
 
 #: Amounts of an effect beside two discrepancy models agree within this many standard deviations of their difference.
 APART = 3.0
+#: An amount of an effect is none if it lies within so many of its standard deviations of it.
+LEAST_AMOUNT = 2.0
 #: The data exclude a discrepancy model of less probability if another one explains them: noise alone makes its misfit
 #: with at least this probability.
 EXCLUDED, EXPLAINS = 1e-6, 0.01
@@ -192,6 +194,15 @@ class Robustness(Brief):
             if not (min(amounts) > 0 or max(amounts) < 0):
                 return False
         return True
+
+    def is_none(self, candidate: Candidate) -> bool:
+        """Whether an effect's amount is none beside the most probable model (`LEAST_AMOUNT`), however probable it is.
+
+        Evidence of a fit that has not reached its best point can ask for an effect without an amount.
+        """
+        values = self.models[0].values
+        amounts = [values[unknown.key] for unknown in candidate.amplitudes if unknown.key in values]
+        return bool(amounts) and all(abs(x) <= LEAST_AMOUNT * sd for x, sd in amounts)
 
     def open(self, probability: float) -> Members:
         """Effects that `robust` may still name when further models are added: probable, and of one sign, so far."""

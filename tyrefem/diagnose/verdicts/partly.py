@@ -124,6 +124,9 @@ def _acting_anyway(revision: Revision, robustness: Robustness, least: float) -> 
             f"{member.key} is not named: beside the films' speed laws in full the data do not ask for it"
         )
     members = tuple(member for member in members if member not in robustness.idle)
+    for member in filter(robustness.is_none, members):
+        revision = revision.because(f"{member.key} is not named: its amount may as well be none")
+    members = tuple(member for member in members if not robustness.is_none(member))
     single = tuple(member for member in members if member.runs)
     if not single:
         return revision, members
