@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tomllib
 from typing import Annotated, Any, ClassVar
 
 import numpy as np
@@ -10,6 +11,7 @@ import pytest
 from tyrefem.contracts.flags import flag_contracts
 from tyrefem.contracts.study import quick_study
 from tyrefem.effects import Effect, Prior, catalogue
+from tyrefem.effects.description import example
 from tyrefem.simulation.surroundings import Surroundings
 
 pytestmark = pytest.mark.fast
@@ -96,11 +98,10 @@ def test_an_untrue_flag_is_named_with_values(effect: type[Effect], words: str) -
     assert words in fault
 
 
-@pytest.mark.parametrize("name", sorted(set(catalogue()) - {"film-scale", "heat-shape", "missing-heat"}))
+@pytest.mark.parametrize("name", sorted(catalogue()))
 def test_shipped_effects_keep_theirs(name: str) -> None:
     effect = catalogue()[name]
-    study = quick_study(None, effect.signature.changes)
-    choices = dict(effect.signature.choice or effect.variants(study)[0])
-    typical = {each.name: each.prior.text(each.prior.usual, 12) for each in effect.parameters() if each.prior.amplitude}
-    tried = effect.check({**choices, **typical})
-    assert [contract.line for contract in flag_contracts(Surroundings(study), tried) if contract.fault] == []
+    (entry,) = tomllib.loads(example(effect))["effects"]
+    tried = effect.check({key: value for key, value in entry.items() if key != "name"} | dict(effect.signature.choice))
+    tyre = Surroundings(quick_study(None, effect.signature.changes))
+    assert [contract.line for contract in flag_contracts(tyre, tried) if contract.fault] == []

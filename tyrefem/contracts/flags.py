@@ -5,9 +5,9 @@ Simulations keep its values by these flags: a false one would give a wrong tempe
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Callable, Iterator
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,14 +16,14 @@ from tyrefem.contracts.contract import Contract, kept
 from tyrefem.effects import Effect
 from tyrefem.effects.combined import SURROUNDING
 from tyrefem.effects.effect import FILMS, SINKS
-from tyrefem.inputs.drive import Ramp
 from tyrefem.mechanics.user_cycle import points_of
+from tyrefem.simulation.effect_trials import TEMPERATURES
 from tyrefem.simulation.surroundings import Surroundings
 
 Array = NDArray[np.float64]
 HEAT = ("heat_factor", "heat_addend")
-#: degC and shares of a phase at which values are compared.
-TEMPERATURES, SHARES = (20.0, 70.0, 150.0), (0.1, 0.37, 0.9)
+#: Shares of a phase at which values are compared.
+SHARES = (0.1, 0.37, 0.9)
 #: Times between two known jumps at which a port is evaluated; halvings of the interval with the largest change, and the
 #: share of it that must remain in the end to be a jump.
 SAMPLES, HALVINGS, REMAINS = 33, 30, 0.5
@@ -38,14 +38,14 @@ def flag_contracts(tyre: Surroundings, effect: Effect) -> Iterator[Contract]:
     if not effect.heat_of_temperature and heats:
         words = "heat_of_temperature = False: its heat is the same at all temperatures"
         yield kept(words, lambda: _same_heat(tyre, effect, heats, _moments(tyre)[:1]))
-    of_time = _ports_over_time(tyre, effect)
-    if effect.states or not of_time:
+    of_time = {} if effect.states else _ports_over_time(tyre, effect)
+    if not of_time:
         return
     surrounding = {name: port for name, port in of_time.items() if name.split("(")[0] in SURROUNDING}
     if effect.of_drive and surrounding:
         words = "of_drive: films, sinks and the rim's power are constant in steady phases"
         yield kept(words, lambda: _constant(tyre, surrounding))
-    yield kept("its ports change steadily over time but at its jumps", lambda: _jump(tyre, effect, of_time))
+    yield kept("its ports jump over time at its jumps only", lambda: _jump(tyre, effect, of_time))
 
 
 def _moments(tyre: Surroundings) -> list[float]:
@@ -76,34 +76,36 @@ def _same_heat(tyre: Surroundings, effect: Effect, ports: tuple[str, ...], momen
 
 
 def _ports_over_time(tyre: Surroundings, effect: Effect) -> dict[str, Callable[[float], Array]]:
-    """Name -> values of a port over time, of every film, sink, surface or zone."""
+    """Name -> values over time of every port that has a time, of each film, sink, surface or zone."""
+    points = {zone.name: points_of(tyre.study.section, zone) for zone in tyre.schedule.zones}
+    everywhere = np.concatenate(list(points.values()), axis=1)
+    places = {"film": FILMS, "sink": SINKS, "surface": effect.surfaces, "zone": tuple(points)}
 
-    def of(name: str, *before: Any, after: tuple[Any, ...] = ()) -> Callable[[float], Array]:
-        return lambda t: np.ravel(np.asarray(getattr(effect, name)(tyre, *before, t, *after), dtype=float))
+    def over_time(port: str, names: list[str], place: str | None) -> Callable[[float], Array]:
+        x = points.get(place or "", everywhere)
+        known = {"tyre": tyre, "x": x, "T": np.full(x.shape[1], 60.0)}
+
+        def values(t: float) -> Array:
+            arguments = [t if name == "t" else known.get(name, place) for name in names]
+            return np.ravel(np.asarray(getattr(effect, port)(*arguments), dtype=float))
+
+        return values
 
     ports: dict[str, Callable[[float], Array]] = {}
-    for names, methods in ((FILMS, ("film_factor", "film_addend", "film_resistance")), (SINKS, ("sink_addend",))):
-        for method in methods:
-            if effect.overrides(method):
-                ports |= {f"{method}('{name}')": of(method, name) for name in names}
-    if effect.overrides("rim_power"):
-        ports["rim_power()"] = of("rim_power")
-    points = {zone.name: points_of(tyre.study.section, zone) for zone in tyre.schedule.zones}
-    if effect.overrides("flux"):
-        x = np.concatenate(list(points.values()), axis=1)
-        ports |= {f"flux('{surface}')": of("flux", surface, x) for surface in effect.surfaces}
-    for method in HEAT:
-        if effect.overrides(method):
-            for zone, x in points.items():
-                ports[f"{method}('{zone}')"] = of(method, zone, x, after=(np.full(x.shape[1], 60.0),))
+    for port in effect.ports():
+        names = [name for name in inspect.signature(getattr(Effect, port)).parameters if name != "self"]
+        if "t" not in names:
+            continue
+        of = next((places[name] for name in names if name in places), (None,))
+        ports |= {f"{port}({'' if place is None else repr(place)})": over_time(port, names, place) for place in of}
     return ports
 
 
 def _constant(tyre: Surroundings, ports: dict[str, Callable[[float], Array]]) -> str | None:
     """The first port that changes within a phase whose drive is constant."""
     borders = [*tyre.drive.starts, tyre.drive.end]
-    for phase, (start, end) in zip(tyre.drive.phases, pairwise(borders), strict=True):
-        if phase.slides or not all(value.constant for _, value in phase if isinstance(value, Ramp)):
+    for number, (phase, (start, end)) in enumerate(zip(tyre.drive.phases, pairwise(borders), strict=True)):
+        if not tyre.is_steady(number):
             continue
         first, *others = (start + share * (end - start) for share in SHARES)
         for name, port in ports.items():
