@@ -52,7 +52,7 @@ class ContactGrid(Brief):
         n = np.arange(self.harmonics + 1)[:, None]
         smooth = np.sinc(n * self.step / (2 * np.pi)) ** 2
         even, odd = smooth * np.cos(n * self.angles), smooth * np.sin(n * self.angles)
-        return np.stack([odd if c == 2 else even for c in self.tread.components])
+        return np.stack([odd if is_odd else even for is_odd in self._odd])
 
     @functools.cached_property
     def shares(self) -> Array:
@@ -74,17 +74,32 @@ class ContactGrid(Brief):
         return self._blocks[lowest]
 
     def _sums(self, lowest: int) -> Array:
+        """Sums over n of waves at two angles: half of a wave at their difference and half of one at their sum."""
         compliance = self.tread.up_to(self.harmonics, lowest)
         _, c, m, _, _ = compliance.shape
-        blocks = np.zeros((c, self.n_angles * m, c, self.n_angles * m))
-        shapes, shares = self.shapes[:, lowest + 1 :], self.shares[lowest + 1 :]
-        for to in range(c):
-            for of in range(c):
-                loaded = (compliance[:, to, :, of] * shares[:, None, None]).reshape(len(shares), m * m)
-                for j, shape in enumerate(shapes[of].T):
-                    sums = (shapes[to].T * shape) @ loaded
-                    blocks[to, :, of, j * m : (j + 1) * m] = sums.reshape(self.n_angles * m, m)
-        return blocks
+        n = np.arange(lowest + 1, self.harmonics + 1)
+        weights = self.shares[lowest + 1 :] * np.sinc(n * self.step / (2 * np.pi)) ** 4 / 2
+        phase = np.multiply.outer(self.step * np.arange(2 * self.n_angles - 1), n)
+        even, odd = np.cos(phase) * weights, np.sin(phase) * weights
+        at = np.arange(self.n_angles)
+        apart, together = np.abs(at[:, None] - at), at[:, None] + at
+        ahead = np.sign(at - at[:, None])[..., None, None]
+        blocks = np.empty((c, self.n_angles, m, c, self.n_angles, m))
+        for to, is_odd in enumerate(self._odd):
+            for of, of_odd in enumerate(self._odd):
+                waves = (odd if is_odd != of_odd else even) @ compliance[:, to, :, of].reshape(len(n), m * m)
+                waves = waves.reshape(-1, m, m)
+                if is_odd == of_odd:
+                    sums = waves[apart] + (-waves[together] if is_odd else waves[together])
+                else:
+                    sums = waves[together] + (ahead if of_odd else -ahead) * waves[apart]
+                blocks[to, :, :, of] = sums.transpose(0, 2, 1, 3)
+        return blocks.reshape(c, self.n_angles * m, c, self.n_angles * m)
+
+    @property
+    def _odd(self) -> list[bool]:
+        """Whether a component's waves are odd about the lowest point."""
+        return [component == 2 for component in self.tread.components]
 
     def load_harmonics(self, forces: Array) -> Array:
         """(harmonics + 1, c, m) load amplitudes, N per radian, of forces (c, k) on the tread."""

@@ -160,7 +160,10 @@ class NearbyTread(TreadCompliance):
         return waves.motion + waves.responses(few, loads[above + 1 :, self.dofs.ravel()]) - waves.by_few
 
     def _serves(self, highest: int, above: int) -> bool:
-        return self.waves is not None and (highest, above) == (self.waves.near.harmonics, self.waves.above)
+        """Whether these are the short waves of the nearby tyre, and more than `FEW`."""
+        if self.waves is None or highest - above <= FEW:
+            return False
+        return (highest, above) == (self.waves.near.harmonics, self.waves.above)
 
     def _unit(self, n: int) -> UnitMotion:
         assert self.waves is not None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,7 +16,6 @@ from tyrefem.mechanics.footprint.touching import Touching
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 #: Largest number of conjugate-gradient iterations in a step.
 ITERATIONS = 400
 #: Iterations over which a rate of motion must have settled.
@@ -25,13 +25,14 @@ DELAY = 4
 @dataclass(frozen=True, eq=False)
 class NewtonStep:
     """A step (highest + 1, n_dofs), m; its contact forces (k,), N; iterations; ``residual`` -g - J x - B' f, N per
-    radian, that the search leaves; ``unstable``: the search direction with negative stiffness, if the search met
-    one."""
+    radian, that the search leaves; ``started``: work of the residual, J, at its beginning; ``unstable``: the search
+    direction with negative stiffness, if the search met one."""
 
     motion: Array
     forces: Array
     iterations: int
     residual: Array
+    started: float = 0.0
     unstable: Array | None = None
 
     @property
@@ -44,11 +45,12 @@ class NewtonStep:
 class SearchEnd:
     """What ends conjugate gradients: the relative ``residual`` in the preconditioner's norm, or its work, J, below
     ``least``; or, without internal forces, a relative change of the energy x J x below ``settled`` over `DELAY`
-    iterations (0: never)."""
+    iterations (0: never). It does not begin with more work than ``most``, J."""
 
     residual: float = 0.0
     least: float = 0.0
     settled: float = 0.0
+    most: float = math.inf
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,11 +60,14 @@ class Preconditioner:
     Parameters
     ----------
     touching : points of possible contact. closed : numbers of the closed points. rotations : R.
+    normal : (k,) n of the points, if the load n f is kept and the deflection D is free: B x - C f + n D = 0. None:
+        the deflection is kept.
     """
 
     touching: Touching
     closed: Indices
     rotations: Rotations
+    normal: Array | None = None
 
     @functools.cached_property
     def tail(self) -> Array:
@@ -88,11 +93,35 @@ class Preconditioner:
         schur = self.touching.tyre.compliance(loads, rows)
         return cho_factor((schur + schur.T) / 2 + self.tail)
 
-    def forces(self, right: Array) -> Array:
+    @functools.cached_property
+    def _loaded(self) -> Array:
+        """S^-1 n over n S^-1 n, of the closed points."""
+        assert self.normal is not None
+        normal = self.normal[self.closed]
+        solved = self._solved(normal)
+        return solved / (normal @ solved)
+
+    def _solved(self, right: Array) -> Array:
         """S^-1 b."""
         from scipy.linalg import cho_solve
 
-        return right if not len(right) else np.asarray(cho_solve(self._factor, right))
+        return np.asarray(cho_solve(self._factor, right))
+
+    def forces(self, right: Array) -> Array:
+        """f of S f = b; if the load is kept, of S f = b - n D with n f = 0."""
+        if not len(right):
+            return right
+        forces = self._solved(right)
+        if self.normal is not None:
+            forces -= (self.normal[self.closed] @ forces) * self._loaded
+        return forces
+
+    def deflection(self, gaps: Array) -> float:
+        """D, m, that closes gaps n D of the closed points, m; zero, if it is kept."""
+        if self.normal is None:
+            return 0.0
+        normal = self.normal[self.closed]
+        return float(normal @ gaps / (normal @ normal))
 
     def into(self, motion: Array) -> Array:
         """B x."""
@@ -137,12 +166,10 @@ class Preconditioner:
 
 
 def newton_step(
-    touching: Touching,
-    touched: Flags,
+    lead: Preconditioner,
     tangent: Tangent,
     distance: Array,
     end: SearchEnd,
-    rotations: Rotations,
     start: NewtonStep | None = None,
     damping: float = 0.0,
 ) -> NewtonStep:
@@ -153,41 +180,40 @@ def newton_step(
 
     Parameters
     ----------
-    touching : points. touched : (k,) contact set.
+    lead : P, with the points and the contact set.
     tangent : g, internal forces, and J, their derivative. distance : w (k,), m.
-    end : what ends the search. rotations : of the deformed tyre. start : a guess of the step.
+    end : what ends the search. start : a guess of the step.
     damping : share of the preconditioner's stiffness that is added to J.
     """
-    closed = np.flatnonzero(touched)
-    preconditioner = Preconditioner(touching, closed, rotations)
-    work = touching.tyre.work
+    closed = lead.closed
+    work = lead.touching.tyre.work
     x, total = np.zeros(tangent.forces.shape), np.zeros(len(closed))
     if start is not None:
         x, total = start.motion.copy(), start.forces[closed]
     if len(closed):
-        missing = preconditioner.forces(distance[closed] - preconditioner.into(x) + preconditioner.tail @ total)
-        x, total = x + preconditioner.displacements(missing), total - missing
-    residual = preconditioner.loaded(-tangent.forces - tangent.product(x), total)
+        missing = lead.forces(distance[closed] - lead.into(x) + lead.tail @ total)
+        x, total = x + lead.displacements(missing), total - missing
+    residual = lead.loaded(-tangent.forces - tangent.product(x), total)
     pressed = np.zeros(len(closed))
 
     def searched() -> tuple[Array, float]:
         nonlocal residual, pressed, total
-        change, forces = preconditioner(residual, pressed)
-        residual, pressed, total = preconditioner.loaded(residual, forces), pressed + forces, total + forces
-        return change, work(residual, change) + preconditioner.energy(pressed)
+        change, forces = lead(residual, pressed)
+        residual, pressed, total = lead.loaded(residual, forces), pressed + forces, total + forces
+        return change, work(residual, change) + lead.energy(pressed)
 
     along, size = searched()
     pushed, first, stable, count = pressed, size, True, 0
     stiff, stiff_pushed, damped = residual, pressed, np.zeros_like(x)
     drops: list[float] = []
-    left = work(x, tangent.product(x)) + preconditioner.energy(total) if end.settled else 0.0
-    while stable and count < ITERATIONS and size > max(end.residual**2 * first, end.least):
+    left = work(x, tangent.product(x)) + lead.energy(total) if end.settled else 0.0
+    while stable and count < ITERATIONS and first <= end.most and size > max(end.residual**2 * first, end.least):
         if end.settled and count >= DELAY and sum(drops[-DELAY:]) <= end.settled * (left - sum(drops)):
             break
         bent, bent_pushed = tangent.product(along), pushed
         if damping:
             bent, bent_pushed = bent + damping * stiff, pushed + damping * stiff_pushed
-        energy = work(along, bent) + preconditioner.energy(pushed, bent_pushed)
+        energy = work(along, bent) + lead.energy(pushed, bent_pushed)
         stable, count = energy > 0, count + 1
         if stable:
             step = size / energy
@@ -198,6 +224,6 @@ def newton_step(
             change, size = searched()
             along, pushed = change + size / before * along, pressed + size / before * pushed
             stiff, stiff_pushed = residual + size / before * stiff, pressed + size / before * stiff_pushed
-    forces = np.zeros(len(touching.rows))
+    forces = np.zeros(len(lead.touching.rows))
     forces[closed] = total
-    return NewtonStep(x, forces, count, residual + damping * damped, None if stable else along)
+    return NewtonStep(x, forces, count, residual + damping * damped, first, None if stable else along)

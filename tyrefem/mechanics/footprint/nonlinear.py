@@ -167,11 +167,11 @@ class NonlinearForces:
     def second_strains(self, amplitudes: Array) -> Array:
         """(highest + 1, 6, e, q) amplitudes of H'H/2, the nonlinear part of Green's strain; shears doubled."""
         h = self.round.gradient(amplitudes)
-        h = np.moveaxis(h, 1, -1).reshape(len(h), *h.shape[2:], 3, 3)
+        h = h.reshape(len(h), COMPONENTS, COMPONENTS, *h.shape[2:])
         (cos, _, sin), _ = self.round.waves
         rows = []
         for i, j in PAIRS:
-            part = (1 if i == j else 2) * (h[..., i] * h[..., j]).sum(axis=-1) / 2
+            part = (0.5 if i == j else 1.0) * (h[:, :, i] * h[:, :, j]).sum(axis=1)
             odd = (i == 2) != (j == 2)
             rows.append(np.moveaxis(part @ (self.round.shares * (sin if odd else cos)), -1, 0))
         return np.stack(rows, axis=1)
