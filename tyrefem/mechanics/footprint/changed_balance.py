@@ -15,7 +15,7 @@ from tyrefem.mechanics.footprint.newton import NewtonStep, Preconditioner, Searc
 from tyrefem.mechanics.footprint.nonlinear import NonlinearForces, Tangent
 
 Array = NDArray[np.float64]
-#: Residual of the first Newton step over what it balances; of later steps over the change, in the energy's norm.
+#: Residual of the first Newton step over what it balances, and of later steps over the change, in the energy's norm.
 FIRST, ACCURACY = 0.15, 0.05
 #: The change has settled where it began a step with less than this share of its work unbalanced; with more than the
 #: second one there is no convergence.
@@ -66,10 +66,11 @@ class ChangedBalances:
 
     Parameters
     ----------
-    near : the footprint.
+    near : the footprint. accuracy : residual of a Newton step over the change of the motion, in the energy's norm.
     """
 
     near: Footprint
+    accuracy: float = ACCURACY
 
     @functools.cached_property
     def kept(self) -> Imbalance:
@@ -81,7 +82,7 @@ class ChangedBalances:
 
         ``start`` : the footprint, on a grid of that tyre.
         """
-        search = _ChangeSearch(self.kept, tyre, start, load)
+        search = _ChangeSearch(self, tyre, start, load)
         for _ in range(STEPS):
             if not search.advance():
                 return None
@@ -102,8 +103,9 @@ class _ChangeSearch:
     gaps: Array
     normal_components: Array
 
-    def __init__(self, kept: Imbalance, tyre: LargeMotion, start: DeflectedState, load: float | None) -> None:
-        self.kept, self.tyre, self.start, self.moment, self.load = kept, tyre, start, start, load
+    def __init__(self, near: ChangedBalances, tyre: LargeMotion, start: DeflectedState, load: float | None) -> None:
+        self.kept, self.accuracy, self.tyre, self.start, self.load = near.kept, near.accuracy, tyre, start, load
+        self.moment = start
         self.outside = tyre.nonlinear(start.harmonics)
         self.end = SearchEnd(FIRST)
         self.change, self.steps, self.settled = np.inf, 0, False
@@ -131,7 +133,7 @@ class _ChangeSearch:
         )  # fmt: skip
         whole = self.moment.motion - self.start.motion
         work = tyre.factors.work(self.tangent.product(whole), whole)
-        self.end, self.steps = SearchEnd(least=ACCURACY**2 * work, most=FAR * work), self.steps + 1
+        self.end, self.steps = SearchEnd(least=self.accuracy**2 * work, most=FAR * work), self.steps + 1
         self.settled = self.steps > 1 and step.started <= SETTLED * work
         return True
 
