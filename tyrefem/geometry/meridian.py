@@ -152,6 +152,11 @@ class TwoArcs(PickledFields):
         point[..., 1] *= np.where(s < 0, -1.0, 1.0)
         return point
 
+    @staticmethod
+    def _on_arc(centre: Array, radius: float, angle: Array) -> Array:
+        """(r, z) on an arc, shape (..., 2) [m]."""
+        return np.stack([centre[0] + radius * np.cos(angle), centre[1] + radius * np.sin(angle)], axis=-1)
+
     def normal(self, s: ArrayLike) -> Array:
         """Unit normal (n_r, n_z) outwards at ``s``, shape (..., 2)."""
         s = np.asarray(s, dtype=float)
@@ -180,8 +185,9 @@ class TwoArcs(PickledFields):
         angle_s = middle + np.remainder(angle_s - middle + np.pi, 2 * np.pi) - np.pi
         s_c = self.crown_radius * angle_c
         s_s = self.shoulder_s + self.sidewall_radius * (angle_s - self.shoulder_angle)
-        foot_c = self.position(np.clip(s_c, 0, self.shoulder_s))
-        foot_s = self.position(np.clip(s_s, self.shoulder_s * (1 + 1e-15), self.length))
+        foot_c = self._on_arc(crown, self.crown_radius, np.clip(s_c, 0, self.shoulder_s) / self.crown_radius)
+        beyond = np.clip(s_s, self.shoulder_s, self.length) - self.shoulder_s
+        foot_s = self._on_arc(sidewall, self.sidewall_radius, self.shoulder_angle + beyond / self.sidewall_radius)
         gap_c, gap_s = _length(mirrored - foot_c), _length(mirrored - foot_s)
         on_crown = (gap_c <= gap_s) & (s_c <= self.shoulder_s * (1 + 1e-12))
         y_c, y_s = _length(to_crown) - self.crown_radius, _length(to_sidewall) - self.sidewall_radius

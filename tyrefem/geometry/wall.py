@@ -45,5 +45,6 @@ def _wall(tyre: TyreMesh) -> Wall:
     side = np.linspace(0.0, section.line.length, STATIONS)[:-1]
     s = side if section.half else np.concatenate([-side[:0:-1], side])
     thickness = section.rubber_thickness(s)
-    inner, outer = (kept_inside(tyre, section.place(s, depth)) for depth in (np.zeros_like(s), thickness))
+    surfaces = section.place(np.concatenate([s, s]), np.concatenate([np.zeros_like(s), thickness]))
+    inner, outer = np.split(kept_inside(tyre, surfaces), 2)
     return Wall(s, thickness, inner, outer)

@@ -92,12 +92,13 @@ def _edges(tyre: TyreMesh) -> Array:
 
 def _nearest(ends: Array, points: Array) -> tuple[Array, Array, NDArray[np.intp]]:
     """The nearest place on edges with these ends of every point, its distance, and the number of its edge."""
-    start, along = ends[:, 0], ends[:, 1] - ends[:, 0]
-    part = np.clip(((points[:, None] - start) * along).sum(axis=2) / (along**2).sum(axis=1), 0.0, 1.0)
-    nearest = start + part[..., None] * along
-    distances = np.linalg.norm(points[:, None] - nearest, axis=2)
+    (r, z), (along_r, along_z) = ends[:, 0].T, (ends[:, 1] - ends[:, 0]).T
+    from_r, from_z = points[:, :1] - r, points[:, 1:] - z
+    part = np.clip((from_r * along_r + from_z * along_z) / (along_r**2 + along_z**2), 0.0, 1.0)
+    distances = np.sqrt((from_r - part * along_r) ** 2 + (from_z - part * along_z) ** 2)
     edge, each = distances.argmin(axis=1), np.arange(len(points))
-    return np.asarray(nearest[each, edge]), np.asarray(distances[each, edge]), edge
+    nearest = ends[edge, 0] + part[each, edge, None] * (ends[edge, 1] - ends[edge, 0])
+    return np.asarray(nearest), np.asarray(distances[each, edge]), edge
 
 
 def _moved_to_edge(tyre: TyreMesh, points: Array) -> Array:
