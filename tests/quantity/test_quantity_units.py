@@ -129,3 +129,14 @@ def test_a_comma_in_a_number_is_named(text: str) -> None:
     """Where a decimal comma is usual, ',5 s is not a unit' told nothing."""
     with pytest.raises(InputError, match=r"has a comma; numbers have a decimal point"):
         parse(text, "s")
+
+
+@pytest.mark.parametrize(
+    ("mass", "weight"), [("4500 kg", "44.13 kN"), ("10000 lb", "44.482 kN"), ("4.5 t", "44.13 kN")]
+)
+def test_a_mass_in_place_of_a_force_has_its_weight_in_the_message(mass: str, weight: str) -> None:
+    with pytest.raises(InputError, match=f"a mass: its weight is '{weight}'"):
+        parse(mass, "N")
+    with pytest.raises(InputError, match="is not a unit of this quantity") as error:
+        parse(mass, "Pa")
+    assert "weight" not in str(error.value)

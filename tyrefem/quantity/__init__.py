@@ -206,9 +206,21 @@ def _convert(magnitude: float, text: str, unit: str, value: object, wanted: str)
     try:
         converted = _converted(magnitude, text, unit)
     except Exception as error:  # dimensionality or offset units: the same advice to the user
-        raise InputError(f"'{text}' is not a unit of this quantity ({value!r:.80}); expected {wanted}") from error
+        weight = _weight(magnitude, text) if unit == "N" else ""
+        raise InputError(
+            f"'{text}' is not a unit of this quantity ({value!r:.80}){weight}; expected {wanted}"
+        ) from error
     _check_angle(given, unit, value, wanted)
     return converted
+
+
+def _weight(magnitude: float, text: str) -> str:
+    """What a mass weighs, as part of a message; empty for other quantities."""
+    try:
+        force = _converted(magnitude, text, "kg") * _converted(1.0, "kgf", "N")
+    except Exception:  # as in `_convert`: another quantity
+        return ""
+    return f", but a mass: its weight is '{force / 1e3:.5g} kN'"
 
 
 def _check_angle(given: str, unit: str, value: object, wanted: str) -> None:
