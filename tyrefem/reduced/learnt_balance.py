@@ -45,7 +45,8 @@ def learnt_balances(model: ReducedModel, changes: Sequence[Mapping[str, Any]]) -
 
     The variants with the least and the greatest deflection are made as studies and compared.
     """
-    inputs = model.inputs
+    # Samples make the changes of a variant whenever they are asked for.
+    inputs, changes = model.inputs, list(changes)
     places = [] if inputs is None else [inputs.place(each) for each in changes]
     if inputs is None or not places or any(place is None for place in places):
         return None
