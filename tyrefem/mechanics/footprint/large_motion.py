@@ -13,6 +13,7 @@ from tyrefem.mechanics.footprint.contact import Pressing
 from tyrefem.mechanics.footprint.folding import FoldingElements
 from tyrefem.mechanics.footprint.footprint import Footprint
 from tyrefem.mechanics.footprint.grid import ContactGrid
+from tyrefem.mechanics.footprint.imbalance import Imbalance
 from tyrefem.mechanics.footprint.newton import NewtonStep, Preconditioner, SearchEnd, newton_step
 from tyrefem.mechanics.footprint.nonlinear import NonlinearForces, Tangent
 from tyrefem.mechanics.footprint.rotations import Rotations
@@ -50,6 +51,8 @@ LAST = 0.2
 LOOSE, FLIPPED = 5e-3, (0.1, 0.02)
 #: Accuracy of conjugate gradients: residual of a Newton step; energy for a change of deflection and for the stiffness.
 INNER, BORDER, STIFFNESS = 0.05, 0.03, 5e-3
+#: Residual of a Newton step to a changed balance: it starts with that balance's forces.
+INNER_CHANGE = 0.1
 #: Residual that ends conjugate gradients, in the energy's norm, over the tolerance.
 ENERGY = 0.4
 #: The angles of possible contact are those of the deflection times this factor.
@@ -150,7 +153,12 @@ class LargeMotion:
         return replace(moment, motion=padded(moment.motion), grid=grid, forces=spread(moment.forces), rate=rate)
 
     def balance(
-        self, start: DeflectedState, deflection: float, tolerance: float, load: float | None = None
+        self,
+        start: DeflectedState,
+        deflection: float,
+        tolerance: float,
+        load: float | None = None,
+        kept: Imbalance | None = None,
     ) -> DeflectedState | None:
         """The balance at a deflection, m, or from there under a load, N; None without convergence.
 
@@ -159,8 +167,9 @@ class LargeMotion:
         Parameters
         ----------
         start : a nearby balance. tolerance : last relative change of the motion, and of the load.
+        kept : what it left, if it is of a tyre with another stiffness, and stays unbalanced.
         """
-        search = _BalanceSearch(self, start, deflection, tolerance)
+        search = _BalanceSearch(self, start, deflection, tolerance, kept)
         for _ in range(STEPS):
             if not search.advance() or (load is not None and not search.carry(load)):
                 return None
@@ -262,8 +271,15 @@ class _BalanceSearch:
     rotations: Rotations
     step: NewtonStep
 
-    def __init__(self, tyre: LargeMotion, start: DeflectedState, deflection: float, tolerance: float) -> None:
-        self.tyre, self.start, self.tolerance = tyre, start, tolerance
+    def __init__(
+        self,
+        tyre: LargeMotion,
+        start: DeflectedState,
+        deflection: float,
+        tolerance: float,
+        kept: Imbalance | None = None,
+    ) -> None:
+        self.tyre, self.start, self.tolerance, self.kept = tyre, start, tolerance, kept
         self.moved = deflection - start.deflection
         self.moment = replace(start, deflection=deflection)
         self.outside = tyre.nonlinear(start.harmonics)
@@ -338,17 +354,24 @@ class _BalanceSearch:
             if self.convex:
                 self.tangent = tyre._folding.convex(self.tangent)
         self.gaps, self.normal_components, self.touching, _ = tyre.at_road(moment)
+        work = tyre.factors.work(self.tangent.forces, moment.motion)
+        if self.kept is not None:
+            self.tangent = replace(self.tangent, forces=self.tangent.forces - self.kept.forces)
+            self.gaps = self.gaps - self.kept.gaps_at(moment.grid.n_angles)
         self.distance = self.gaps - self.touching.tail @ moment.forces
         self.rotations = tyre.rotations(self.outside, moment.motion)
-        work = tyre.factors.work(self.tangent.forces, moment.motion)
-        self.end = SearchEnd(INNER, (ENERGY * self.tolerance) ** 2 * work)
+        self.end = SearchEnd(INNER if self.kept is None else INNER_CHANGE, (ENERGY * self.tolerance) ** 2 * work)
         if not self.steps:
             self.closed = self.touching.closed(self.gaps, moment.forces, moment.forces > 0)
 
     def _solve(self) -> None:
         """The Newton step, and its change of a gradient."""
         lead = Preconditioner(self.touching, np.flatnonzero(self.closed), self.rotations)
-        self.step = newton_step(lead, self.tangent, self.distance, self.end, damping=self.damping)
+        start = None
+        if self.kept is not None:  # a small change of these forces
+            motion = np.zeros_like(self.moment.motion)
+            start = NewtonStep(motion, self.moment.forces, 0, motion)
+        self.step = newton_step(lead, self.tangent, self.distance, self.end, start, self.damping)
         self.change = self._gradient_change(self.step.motion)
 
     def _gradient_change(self, motion: Array) -> float:
@@ -380,6 +403,8 @@ class _BalanceSearch:
         motion, forces = moment.motion + share * step.motion, moment.forces + share * (step.forces - moment.forces)
         self.before, self.closed = self.closed, touching.closed(after, step.forces, self.closed)
         load = self.tyre.sides * float(self.normal_components @ forces)
+        if self.kept is not None:
+            load += self.kept.load
         self.last_before = self.last
         self.last = share * float(np.abs(step.motion).max()) / max(float(np.abs(motion).max()), 1e-300)
         self.steps, self.whole = self.steps + 1, share == 1

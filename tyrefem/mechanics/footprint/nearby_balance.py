@@ -12,10 +12,10 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from tyrefem.cache import Cache, fingerprint
-from tyrefem.mechanics.footprint.changed_balance import ChangedBalances
 from tyrefem.mechanics.footprint.contact import Pressing
 from tyrefem.mechanics.footprint.footprint import Footprint
 from tyrefem.mechanics.footprint.harmonic_balance import ON_THE_WAY, Balance
+from tyrefem.mechanics.footprint.imbalance import Imbalance
 from tyrefem.mechanics.footprint.large_motion import DeflectedState, LargeMotion
 from tyrefem.mechanics.footprint.nearby_tread import NearbyPressing, ShortWaves
 from tyrefem.mechanics.footprint.taut_tyre import TautTyre, tautened
@@ -30,8 +30,8 @@ FAR = 2.0
 _LEADING: Cache[TautTyre] = Cache(size=1)
 #: Short waves of the latest such footprints, at two loads.
 _WAVES: Cache[ShortWaves] = Cache(size=2)
-#: Balances of tyres with another stiffness from the latest such footprints.
-_CHANGED: Cache[ChangedBalances] = Cache(size=2)
+#: What the balances of the latest such footprints left.
+_IMBALANCES: Cache[Imbalance] = Cache(size=2)
 #: The latest tyre that started from a footprint, by its state.
 _PRESSINGS: Cache[NearbyPressing] = Cache(size=1)
 
@@ -66,7 +66,7 @@ def nearby_balance(
     balance: Balance, near: Footprint, *, deflection: float | None = None, load: float | None = None
 ) -> Footprint | None:
     """The footprint with the harmonics of a nearby one, by Newton's method from there: a third of the time of load
-    steps. Where only the stiffness differs, it keeps what the nearby balance left (`ChangedBalances`).
+    steps. Where only the stiffness differs, it keeps what the nearby balance left (`Imbalance`).
 
     Parameters
     ----------
@@ -98,16 +98,14 @@ def nearby_balance(
     motion = LargeMotion(pressing, balance.law, balance.before_rim, _leading(near))
     moment = DeflectedState(near.deflection, near.balanced, near.grid, near.forces, near.load, near.rate)
     moment = motion.refined(moment, moment.harmonics, near.harmonics)
-    if unmoved and alike and near.pressing.state.pressure == pressing.state.pressure:
-        reached = _changed(near).balance(motion, moment, load)
-        if reached is not None:
-            return NearbyFootprint(**{**_fields(motion.footprint(reached)), "error": near.error, "law": balance.law})
+    stiffer = unmoved and alike and near.pressing.state.pressure == pressing.state.pressure
+    kept = _imbalance(near) if stiffer else None
     target = near.deflection if deflection is None else deflection
     # A loose balance at a deflection first: pressure and stiffness may have changed. Then the load.
     for tolerance, carried in ((ON_THE_WAY, None), (balance.tolerance, load)):
-        reached = motion.balance(moment, target, tolerance, carried)
+        reached = motion.balance(moment, target, tolerance, carried, kept)
         if reached is None and carried is not None and moment.rate is not None:
-            reached = motion.balance(replace(moment, rate=None), target, tolerance, carried)
+            reached = motion.balance(replace(moment, rate=None), target, tolerance, carried, kept)
         if reached is None or (carried is None and reached.deflection != target):
             return None
         moment, target = reached, reached.deflection
@@ -138,9 +136,9 @@ def _pressing(tyre: Pressing, near: Footprint) -> NearbyPressing:
     return NearbyPressing(tyre.state, tyre.road, waves=waves, like=like)
 
 
-def _changed(near: Footprint) -> ChangedBalances:
-    """Balances of tyres with another stiffness that start from a footprint."""
-    return _CHANGED.get(near, lambda: ChangedBalances(near))
+def _imbalance(near: Footprint) -> Imbalance:
+    """What the balance of a footprint left: those of the same tyre with another stiffness keep it."""
+    return _IMBALANCES.get(near, lambda: Imbalance.of(near))
 
 
 def _waves(near: Footprint) -> ShortWaves:

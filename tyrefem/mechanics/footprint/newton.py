@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -25,14 +24,13 @@ DELAY = 4
 @dataclass(frozen=True, eq=False)
 class NewtonStep:
     """A step (highest + 1, n_dofs), m; its contact forces (k,), N; iterations; ``residual`` -g - J x - B' f, N per
-    radian, that the search leaves; ``started``: work of the residual, J, at its beginning; ``unstable``: the search
-    direction with negative stiffness, if the search met one."""
+    radian, that the search leaves; ``unstable``: the search direction with negative stiffness, if the search met
+    one."""
 
     motion: Array
     forces: Array
     iterations: int
     residual: Array
-    started: float = 0.0
     unstable: Array | None = None
 
     @property
@@ -45,12 +43,11 @@ class NewtonStep:
 class SearchEnd:
     """What ends conjugate gradients: the relative ``residual`` in the preconditioner's norm, or its work, J, below
     ``least``; or, without internal forces, a relative change of the energy x J x below ``settled`` over `DELAY`
-    iterations (0: never). It does not begin with more work than ``most``, J."""
+    iterations (0: never)."""
 
     residual: float = 0.0
     least: float = 0.0
     settled: float = 0.0
-    most: float = math.inf
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,14 +57,11 @@ class Preconditioner:
     Parameters
     ----------
     touching : points of possible contact. closed : numbers of the closed points. rotations : R.
-    normal : (k,) n of the points, if the load n f is kept and the deflection D is free: B x - C f + n D = 0. None:
-        the deflection is kept.
     """
 
     touching: Touching
     closed: Indices
     rotations: Rotations
-    normal: Array | None = None
 
     @functools.cached_property
     def tail(self) -> Array:
@@ -93,35 +87,11 @@ class Preconditioner:
         schur = self.touching.tyre.compliance(loads, rows)
         return cho_factor((schur + schur.T) / 2 + self.tail)
 
-    @functools.cached_property
-    def _loaded(self) -> Array:
-        """S^-1 n over n S^-1 n, of the closed points."""
-        assert self.normal is not None
-        normal = self.normal[self.closed]
-        solved = self._solved(normal)
-        return solved / (normal @ solved)
-
-    def _solved(self, right: Array) -> Array:
+    def forces(self, right: Array) -> Array:
         """S^-1 b."""
         from scipy.linalg import cho_solve
 
-        return np.asarray(cho_solve(self._factor, right))
-
-    def forces(self, right: Array) -> Array:
-        """f of S f = b; if the load is kept, of S f = b - n D with n f = 0."""
-        if not len(right):
-            return right
-        forces = self._solved(right)
-        if self.normal is not None:
-            forces -= (self.normal[self.closed] @ forces) * self._loaded
-        return forces
-
-    def deflection(self, gaps: Array) -> float:
-        """D, m, that closes gaps n D of the closed points, m; zero, if it is kept."""
-        if self.normal is None:
-            return 0.0
-        normal = self.normal[self.closed]
-        return float(normal @ gaps / (normal @ normal))
+        return right if not len(right) else np.asarray(cho_solve(self._factor, right))
 
     def into(self, motion: Array) -> Array:
         """B x."""
@@ -207,7 +177,7 @@ def newton_step(
     stiff, stiff_pushed, damped = residual, pressed, np.zeros_like(x)
     drops: list[float] = []
     left = work(x, tangent.product(x)) + lead.energy(total) if end.settled else 0.0
-    while stable and count < ITERATIONS and first <= end.most and size > max(end.residual**2 * first, end.least):
+    while stable and count < ITERATIONS and size > max(end.residual**2 * first, end.least):
         if end.settled and count >= DELAY and sum(drops[-DELAY:]) <= end.settled * (left - sum(drops)):
             break
         bent, bent_pushed = tangent.product(along), pushed
@@ -226,4 +196,4 @@ def newton_step(
             stiff, stiff_pushed = residual + size / before * stiff, pressed + size / before * stiff_pushed
     forces = np.zeros(len(lead.touching.rows))
     forces[closed] = total
-    return NewtonStep(x, forces, count, residual + damping * damped, first, None if stable else along)
+    return NewtonStep(x, forces, count, residual + damping * damped, None if stable else along)
