@@ -14,7 +14,7 @@ from tyrefem.mechanics.footprint.folding import FoldingElements
 from tyrefem.mechanics.footprint.footprint import Footprint
 from tyrefem.mechanics.footprint.grid import ContactGrid
 from tyrefem.mechanics.footprint.imbalance import Imbalance
-from tyrefem.mechanics.footprint.newton import NewtonStep, Preconditioner, SearchEnd, newton_step
+from tyrefem.mechanics.footprint.newton import NewtonStep, SearchEnd, newton_step
 from tyrefem.mechanics.footprint.nonlinear import NonlinearForces, Tangent
 from tyrefem.mechanics.footprint.rotations import Rotations
 from tyrefem.mechanics.footprint.taut_tyre import TautTyre
@@ -105,7 +105,7 @@ class LargeMotion:
         return self.leading or TautTyre(self.pressing)
 
     @property
-    def sides(self) -> float:
+    def _sides(self) -> float:
         """Sides of the tyre per side of the mesh."""
         return 2.0 if self.pressing.tread.half else 1.0
 
@@ -177,11 +177,11 @@ class LargeMotion:
                 return search.balance
         return None
 
-    def rotations(self, outside: NonlinearForces, motion: Array) -> Rotations:
+    def _rotations(self, outside: NonlinearForces, motion: Array) -> Rotations:
         """Rotations of a motion, in single precision: they only lead a search."""
         return Rotations.of(outside.round.within(np.float32), motion, self.factors.harmonics.held)
 
-    def at_road(self, moment: DeflectedState) -> tuple[Array, Array, Touching, Array]:
+    def _road(self, moment: DeflectedState) -> tuple[Array, Array, Touching, Array]:
         """Gaps, m, their decrease per metre of deflection, the points of possible contact, and the tread's displacement
         (c, k), m."""
         pressing, grid = self.pressing, moment.grid
@@ -217,12 +217,11 @@ class LargeMotion:
     ) -> NewtonStep:
         """Motion and forces per metre of deflection with a constant contact set; ``accuracy`` of its energy."""
         tangent = replace(tangent, forces=np.zeros_like(tangent.forces))
-        lead = Preconditioner(touching, np.flatnonzero(closed), rotations)
-        return newton_step(lead, tangent, -normal_components, SearchEnd(settled=accuracy), start)
+        return newton_step(touching, closed, tangent, -normal_components, SearchEnd(settled=accuracy), rotations, start)
 
     def footprint(self, moment: DeflectedState) -> Footprint:
         """The footprint of a balance, without its `stiffness`."""
-        gaps, _, touching, displacements = self.at_road(moment)
+        gaps, _, touching, displacements = self._road(moment)
         return Footprint(
             self.pressing, moment.grid, moment.deflection, moment.load, 0.0, moment.forces, touching.direction,
             displacements, gaps, balanced=moment.motion, rate=moment.rate,
@@ -235,10 +234,10 @@ class LargeMotion:
         Elements that fold at the balance have no positive stiffness, and the search for the rate no end: they take part
         with a convex one, if need be all elements. nan: it has no end even so.
         """
-        _, normal_components, touching, _ = self.at_road(moment)
+        _, normal_components, touching, _ = self._road(moment)
         outside = self.nonlinear(moment.harmonics)
         tangent = outside.at(moment.motion, np.float32)
-        rotations = self.rotations(outside, moment.motion)
+        rotations = self._rotations(outside, moment.motion)
         start = None
         if moment.rate is not None:
             motion, forces, _ = moment.rate
@@ -256,7 +255,7 @@ class LargeMotion:
             if not rate.stable:
                 return math.nan
         energy = np.pi * self.factors.work(tangent.product(rate.motion), rate.motion)
-        return self.sides * float(energy + rate.forces @ touching.tail @ rate.forces)
+        return self._sides * float(energy + rate.forces @ touching.tail @ rate.forces)
 
 
 class _BalanceSearch:
@@ -277,7 +276,7 @@ class _BalanceSearch:
         start: DeflectedState,
         deflection: float,
         tolerance: float,
-        kept: Imbalance | None = None,
+        kept: Imbalance | None,
     ) -> None:
         self.tyre, self.start, self.tolerance, self.kept = tyre, start, tolerance, kept
         self.moved = deflection - start.deflection
@@ -331,7 +330,7 @@ class _BalanceSearch:
         self.settled &= missed <= tolerance
         self.settled |= still and self.whole and max(self.last, missed) <= CYCLE * tolerance
         if not self.settled:  # forces that the search leaves unbalanced do work on the rate: the load without them
-            now -= self.tyre.sides * np.pi * self.tyre.factors.work(self.step.residual, motion)
+            now -= self.tyre._sides * np.pi * self.tyre.factors.work(self.step.residual, motion)
         more = (load - now) / slope
         far = abs(more) * self._gradient_change(motion)
         if far > AHEAD:
@@ -353,25 +352,26 @@ class _BalanceSearch:
             self.convex = bool(tyre._folding) and self.change > CONVEX
             if self.convex:
                 self.tangent = tyre._folding.convex(self.tangent)
-        self.gaps, self.normal_components, self.touching, _ = tyre.at_road(moment)
+        self.gaps, self.normal_components, self.touching, _ = tyre._road(moment)
         work = tyre.factors.work(self.tangent.forces, moment.motion)
         if self.kept is not None:
             self.tangent = replace(self.tangent, forces=self.tangent.forces - self.kept.forces)
             self.gaps = self.gaps - self.kept.gaps_at(moment.grid.n_angles)
         self.distance = self.gaps - self.touching.tail @ moment.forces
-        self.rotations = tyre.rotations(self.outside, moment.motion)
+        self.rotations = tyre._rotations(self.outside, moment.motion)
         self.end = SearchEnd(INNER if self.kept is None else INNER_CHANGE, (ENERGY * self.tolerance) ** 2 * work)
         if not self.steps:
             self.closed = self.touching.closed(self.gaps, moment.forces, moment.forces > 0)
 
     def _solve(self) -> None:
         """The Newton step, and its change of a gradient."""
-        lead = Preconditioner(self.touching, np.flatnonzero(self.closed), self.rotations)
         start = None
         if self.kept is not None:  # a small change of these forces
             motion = np.zeros_like(self.moment.motion)
             start = NewtonStep(motion, self.moment.forces, 0, motion)
-        self.step = newton_step(lead, self.tangent, self.distance, self.end, start, self.damping)
+        self.step = newton_step(
+            self.touching, self.closed, self.tangent, self.distance, self.end, self.rotations, start, self.damping
+        )
         self.change = self._gradient_change(self.step.motion)
 
     def _gradient_change(self, motion: Array) -> float:
@@ -402,7 +402,7 @@ class _BalanceSearch:
         after = self.gaps - touching.into(step.motion) + touching.tail @ (step.forces - moment.forces)
         motion, forces = moment.motion + share * step.motion, moment.forces + share * (step.forces - moment.forces)
         self.before, self.closed = self.closed, touching.closed(after, step.forces, self.closed)
-        load = self.tyre.sides * float(self.normal_components @ forces)
+        load = self.tyre._sides * float(self.normal_components @ forces)
         if self.kept is not None:
             load += self.kept.load
         self.last_before = self.last
@@ -425,4 +425,4 @@ class _BalanceSearch:
         if self.moment.rate is not None:
             return self.moment.rate
         rate = self.tyre._rate(self.touching, self.before, self.tangent, self.normal_components, BORDER, self.rotations)
-        return rate.motion, rate.forces, self.tyre.sides * float(self.normal_components @ rate.forces)
+        return rate.motion, rate.forces, self.tyre._sides * float(self.normal_components @ rate.forces)

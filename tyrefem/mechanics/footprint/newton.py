@@ -15,6 +15,7 @@ from tyrefem.mechanics.footprint.touching import Touching
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
+Flags = NDArray[np.bool_]
 #: Largest number of conjugate-gradient iterations in a step.
 ITERATIONS = 400
 #: Iterations over which a rate of motion must have settled.
@@ -136,10 +137,12 @@ class Preconditioner:
 
 
 def newton_step(
-    lead: Preconditioner,
+    touching: Touching,
+    touched: Flags,
     tangent: Tangent,
     distance: Array,
     end: SearchEnd,
+    rotations: Rotations,
     start: NewtonStep | None = None,
     damping: float = 0.0,
 ) -> NewtonStep:
@@ -150,40 +153,41 @@ def newton_step(
 
     Parameters
     ----------
-    lead : P, with the points and the contact set.
+    touching : points. touched : (k,) contact set.
     tangent : g, internal forces, and J, their derivative. distance : w (k,), m.
-    end : what ends the search. start : a guess of the step.
+    end : what ends the search. rotations : of the deformed tyre. start : a guess of the step.
     damping : share of the preconditioner's stiffness that is added to J.
     """
-    closed = lead.closed
-    work = lead.touching.tyre.work
+    closed = np.flatnonzero(touched)
+    preconditioner = Preconditioner(touching, closed, rotations)
+    work = touching.tyre.work
     x, total = np.zeros(tangent.forces.shape), np.zeros(len(closed))
     if start is not None:
         x, total = start.motion.copy(), start.forces[closed]
     if len(closed):
-        missing = lead.forces(distance[closed] - lead.into(x) + lead.tail @ total)
-        x, total = x + lead.displacements(missing), total - missing
-    residual = lead.loaded(-tangent.forces - tangent.product(x), total)
+        missing = preconditioner.forces(distance[closed] - preconditioner.into(x) + preconditioner.tail @ total)
+        x, total = x + preconditioner.displacements(missing), total - missing
+    residual = preconditioner.loaded(-tangent.forces - tangent.product(x), total)
     pressed = np.zeros(len(closed))
 
     def searched() -> tuple[Array, float]:
         nonlocal residual, pressed, total
-        change, forces = lead(residual, pressed)
-        residual, pressed, total = lead.loaded(residual, forces), pressed + forces, total + forces
-        return change, work(residual, change) + lead.energy(pressed)
+        change, forces = preconditioner(residual, pressed)
+        residual, pressed, total = preconditioner.loaded(residual, forces), pressed + forces, total + forces
+        return change, work(residual, change) + preconditioner.energy(pressed)
 
     along, size = searched()
     pushed, first, stable, count = pressed, size, True, 0
     stiff, stiff_pushed, damped = residual, pressed, np.zeros_like(x)
     drops: list[float] = []
-    left = work(x, tangent.product(x)) + lead.energy(total) if end.settled else 0.0
+    left = work(x, tangent.product(x)) + preconditioner.energy(total) if end.settled else 0.0
     while stable and count < ITERATIONS and size > max(end.residual**2 * first, end.least):
         if end.settled and count >= DELAY and sum(drops[-DELAY:]) <= end.settled * (left - sum(drops)):
             break
         bent, bent_pushed = tangent.product(along), pushed
         if damping:
             bent, bent_pushed = bent + damping * stiff, pushed + damping * stiff_pushed
-        energy = work(along, bent) + lead.energy(pushed, bent_pushed)
+        energy = work(along, bent) + preconditioner.energy(pushed, bent_pushed)
         stable, count = energy > 0, count + 1
         if stable:
             step = size / energy
@@ -194,6 +198,6 @@ def newton_step(
             change, size = searched()
             along, pushed = change + size / before * along, pressed + size / before * pushed
             stiff, stiff_pushed = residual + size / before * stiff, pressed + size / before * stiff_pushed
-    forces = np.zeros(len(lead.touching.rows))
+    forces = np.zeros(len(touching.rows))
     forces[closed] = total
     return NewtonStep(x, forces, count, residual + damping * damped, None if stable else along)
